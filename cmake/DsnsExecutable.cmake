@@ -1,0 +1,26 @@
+# dsns_executable(TARGET): how the project builds its own tests, examples and benchmarks. Nothing of it reaches users.
+add_library(dsns_build_options INTERFACE)
+target_compile_options(dsns_build_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+  -Wdouble-promotion -Wnon-virtual-dtor -Wold-style-cast)
+# Eigen's own threads fight with ours.
+target_compile_definitions(dsns_build_options INTERFACE EIGEN_DONT_PARALLELIZE)
+if(DSNS_WARNINGS_AS_ERRORS)
+  target_compile_options(dsns_build_options INTERFACE -Werror)
+endif()
+if(DSNS_NATIVE)
+  include(CheckCXXCompilerFlag)
+  check_cxx_compiler_flag(-march=native DSNS_HAS_MARCH_NATIVE)
+  if(DSNS_HAS_MARCH_NATIVE)
+    target_compile_options(dsns_build_options INTERFACE -march=native)
+  endif()
+endif()
+if(DSNS_SANITIZE)
+  set(sanitize -fsanitize=address,undefined -fno-sanitize-recover=all)
+  target_compile_options(dsns_build_options INTERFACE ${sanitize} -fno-omit-frame-pointer)
+  target_link_options(dsns_build_options INTERFACE ${sanitize})
+endif()
+
+function(dsns_executable target)
+  target_link_libraries(${target} PRIVATE dsns_build_options)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+endfunction()

@@ -1,0 +1,20 @@
+# TinyGLTF::TinyGLTF from tinygltf's own package, whatever it calls its target, or from a header and a library.
+find_package(TinyGLTF CONFIG QUIET)
+if(TinyGLTF_FOUND)
+  if(NOT TARGET TinyGLTF::TinyGLTF AND TARGET tinygltf::tinygltf)
+    add_library(TinyGLTF::TinyGLTF INTERFACE IMPORTED)
+    target_link_libraries(TinyGLTF::TinyGLTF INTERFACE tinygltf::tinygltf)
+  endif()
+  return()
+endif()
+
+find_path(TinyGLTF_INCLUDE_DIR tiny_gltf.h PATH_SUFFIXES tinygltf)
+find_library(TinyGLTF_LIBRARY tinygltf)
+mark_as_advanced(TinyGLTF_INCLUDE_DIR TinyGLTF_LIBRARY)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(TinyGLTF REQUIRED_VARS TinyGLTF_LIBRARY TinyGLTF_INCLUDE_DIR)
+if(TinyGLTF_FOUND AND NOT TARGET TinyGLTF::TinyGLTF)
+  add_library(TinyGLTF::TinyGLTF UNKNOWN IMPORTED)
+  set_target_properties(TinyGLTF::TinyGLTF PROPERTIES
+    IMPORTED_LOCATION "${TinyGLTF_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${TinyGLTF_INCLUDE_DIR}")
+endif()

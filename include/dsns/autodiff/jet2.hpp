@@ -1,0 +1,188 @@
+#pragma once
+/// Forward automatic differentiation, second order: a value with gradient and packed symmetric Hessian in N variables.
+/// With N = 2 it is the 2-jet of a surface in a chart (u, v). Needs nothing but the standard library.
+///
+///   const auto u = Jet2<double>::variable(0.3, 0), v = Jet2<double>::variable(0.4, 1);
+///   const auto y = sin(u * v);                       // y.g = {y_u, y_v}, y.h = {y_uu, y_uv, y_vv}
+#include <dsns/autodiff/functions.hpp>
+
+#include <array>
+#include <compare>
+#include <cstddef>
+
+namespace dsns {
+
+/// Left uninitialised by the default constructor, as numbers are.
+template <class T, int N = 2>
+struct Jet2 {
+  using Inner = T;
+  static constexpr int packed = N * (N + 1) / 2;
+
+  T f;
+  std::array<T, std::size_t(N)> g;
+  std::array<T, std::size_t(packed)> h;  ///< upper triangle, row by row
+
+  Jet2() = default;
+  /// A constant.
+  template <class S>
+    requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>)
+  Jet2(const S& s) : f(static_cast<T>(s)) {
+    g.fill(T(0));
+    h.fill(T(0));
+  }
+  Jet2(const T& f_, const std::array<T, std::size_t(N)>& g_, const std::array<T, std::size_t(packed)>& h_) : f(f_), g(g_), h(h_) {}
+  /// The k-th independent variable.
+  static Jet2 variable(const T& x0, int k) {
+    Jet2 x(x0);
+    x.g[static_cast<std::size_t>(k)] = T(1);
+    return x;
+  }
+  /// The second derivative in variables i and j.
+  const T& hessian(int i, int j) const {
+    const int a = i < j ? i : j, b = i < j ? j : i;
+    return h[static_cast<std::size_t>(a * N - a * (a + 1) / 2 + b)];
+  }
+
+  /// w(x) for a function with value w, derivative d and second derivative second() at x.f.
+  template <class Second>
+  friend Jet2 chain(const Jet2& x, const T& w, const T& d, const Second& second) {
+    const T d2 = second();
+    Jet2 r;
+    r.f = w;
+    for (std::size_t i = 0, m = 0; i < N; ++i) {
+      r.g[i] = d * x.g[i];
+      const T bend = d2 * x.g[i];
+      for (std::size_t j = i; j < N; ++j, ++m) r.h[m] = d * x.h[m] + bend * x.g[j];
+    }
+    return r;
+  }
+  /// w(x, y) for a function with value w, partial derivatives wx, wy and second derivatives second() = {xx, xy, yy}.
+  template <class Second>
+  friend Jet2 chain(const Jet2& x, const Jet2& y, const T& w, const T& wx, const T& wy, const Second& second) {
+    const auto s = second();
+    Jet2 r;
+    r.f = w;
+    for (std::size_t i = 0, m = 0; i < N; ++i) {
+      r.g[i] = wx * x.g[i] + wy * y.g[i];
+      const T bend_x = s.xx * x.g[i] + s.xy * y.g[i], bend_y = s.xy * x.g[i] + s.yy * y.g[i];
+      for (std::size_t j = i; j < N; ++j, ++m)
+        r.h[m] = wx * x.h[m] + wy * y.h[m] + bend_x * x.g[j] + bend_y * y.g[j];
+    }
+    return r;
+  }
+  friend bool derivatives_vanish(const Jet2& x) {
+    bool zero = detail::inert(x.f);
+    for (const T& d : x.g) zero = zero && d == T(0) && detail::inert(d);
+    for (const T& d : x.h) zero = zero && d == T(0) && detail::inert(d);
+    return zero;
+  }
+
+  friend Jet2 operator+(const Jet2& a) { return a; }
+  friend Jet2 operator-(const Jet2& a) {
+    return each(a, [](const T& x) { return -x; });
+  }
+  friend Jet2 operator+(const Jet2& a, const Jet2& b) {
+    return each(a, b, [](const T& x, const T& y) { return x + y; });
+  }
+  friend Jet2 operator-(const Jet2& a, const Jet2& b) {
+    return each(a, b, [](const T& x, const T& y) { return x - y; });
+  }
+  friend Jet2 operator*(const Jet2& a, const Jet2& b) {
+    Jet2 r;
+    r.f = a.f * b.f;
+    for (std::size_t i = 0, m = 0; i < N; ++i) {
+      r.g[i] = a.f * b.g[i] + b.f * a.g[i];
+      for (std::size_t j = i; j < N; ++j, ++m)
+        r.h[m] = a.f * b.h[m] + b.f * a.h[m] + a.g[i] * b.g[j] + a.g[j] * b.g[i];
+    }
+    return r;
+  }
+  friend Jet2 operator/(const Jet2& a, const Jet2& b) {
+    Jet2 r;
+    const T inverse = 1 / b.f;
+    r.f = a.f / b.f;
+    for (std::size_t i = 0; i < N; ++i) r.g[i] = (a.g[i] - r.f * b.g[i]) * inverse;
+    for (std::size_t i = 0, m = 0; i < N; ++i)  // from a = r b
+      for (std::size_t j = i; j < N; ++j, ++m)
+        r.h[m] = (a.h[m] - r.f * b.h[m] - r.g[i] * b.g[j] - r.g[j] * b.g[i]) * inverse;
+    return r;
+  }
+
+  template <PassiveFor<Jet2> S>
+  friend Jet2 operator+(const Jet2& a, const S& s) {
+    return Jet2(a.f + detail::constant<Jet2>(s), a.g, a.h);
+  }
+  template <PassiveFor<Jet2> S>
+  friend Jet2 operator+(const S& s, const Jet2& a) {
+    return a + s;
+  }
+  template <PassiveFor<Jet2> S>
+  friend Jet2 operator-(const Jet2& a, const S& s) {
+    return Jet2(a.f - detail::constant<Jet2>(s), a.g, a.h);
+  }
+  template <PassiveFor<Jet2> S>
+  friend Jet2 operator-(const S& s, const Jet2& a) {
+    Jet2 r = -a;
+    r.f = detail::constant<Jet2>(s) - a.f;
+    return r;
+  }
+  template <PassiveFor<Jet2> S>
+  friend Jet2 operator*(const Jet2& a, const S& s) {
+    const auto& c = detail::constant<Jet2>(s);
+    return each(a, [&c](const T& x) { return x * c; });
+  }
+  template <PassiveFor<Jet2> S>
+  friend Jet2 operator*(const S& s, const Jet2& a) {
+    return a * s;
+  }
+  template <PassiveFor<Jet2> S>
+  friend Jet2 operator/(const Jet2& a, const S& s) {
+    const auto& c = detail::constant<Jet2>(s);
+    return each(a, [&c](const T& x) { return x / c; });
+  }
+  template <PassiveFor<Jet2> S>
+  friend Jet2 operator/(const S& s, const Jet2& a) {
+    const T q = detail::constant<Jet2>(s) / a.f, d = -q / a.f;
+    return chain(a, q, d, [&] { return -2 * d / a.f; });
+  }
+
+  Jet2& operator+=(const Jet2& b) { return *this = *this + b; }
+  Jet2& operator-=(const Jet2& b) { return *this = *this - b; }
+  Jet2& operator*=(const Jet2& b) { return *this = *this * b; }
+  Jet2& operator/=(const Jet2& b) { return *this = *this / b; }
+
+  /// Comparisons see values only.
+  friend bool operator==(const Jet2& a, const Jet2& b) { return a.f == b.f; }
+  friend auto operator<=>(const Jet2& a, const Jet2& b) { return a.f <=> b.f; }
+  template <PassiveFor<Jet2> S>
+  friend bool operator==(const Jet2& a, const S& s) {
+    return a.f == detail::constant<Jet2>(s);
+  }
+  template <PassiveFor<Jet2> S>
+  friend auto operator<=>(const Jet2& a, const S& s) {
+    return a.f <=> detail::constant<Jet2>(s);
+  }
+
+ private:
+  template <class Op>
+  static Jet2 each(const Jet2& a, const Op& op) {
+    Jet2 r;
+    r.f = op(a.f);
+    for (std::size_t i = 0; i < N; ++i) r.g[i] = op(a.g[i]);
+    for (std::size_t m = 0; m < packed; ++m) r.h[m] = op(a.h[m]);
+    return r;
+  }
+  template <class Op>
+  static Jet2 each(const Jet2& a, const Jet2& b, const Op& op) {
+    Jet2 r;
+    r.f = op(a.f, b.f);
+    for (std::size_t i = 0; i < N; ++i) r.g[i] = op(a.g[i], b.g[i]);
+    for (std::size_t m = 0; m < packed; ++m) r.h[m] = op(a.h[m], b.h[m]);
+    return r;
+  }
+};
+
+template <class T, int N>
+inline constexpr bool is_differentiable<Jet2<T, N>> = true;
+
+}  // namespace dsns

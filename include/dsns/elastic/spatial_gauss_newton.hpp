@@ -1,0 +1,182 @@
+#pragma once
+/// One stage of spatial registration: Gauss-Newton on vector spherical harmonics. Particles y_i = gamma(s_i) start on the
+/// quadrature's nodes; each step composes exp(v) on the left, so a step costs the same however many came before.
+#include <dsns/elastic/half_density.hpp>
+#include <dsns/elastic/spatial_options.hpp>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+namespace dsns {
+
+namespace detail {
+
+/// The particles' state: y = gamma(s), J and O with everything that is evaluated there.
+struct Particles {
+  Mat3X y;
+  Eigen::VectorXd J;
+  Mat3 O;
+  HalfDensityJets field;  ///< of the second body at y
+  double energy = 0;
+};
+
+/// Rows of the linearised problem depend on the field only through a 6 x 6 Gram matrix a point (field, two derivatives, three
+/// infinitesimal rotations), so the number of components and times is free.
+class SpatialProblem {
+ public:
+  SpatialProblem(const HalfDensityField& first, HalfDensityField second, const SphereQuadrature& q,
+                 const SpatialOptions& options)
+      : target_(first(charts_at(q.points)).g), second_(std::move(second)), weights_(q.weights), options_(&options) {}
+
+  Particles at(Mat3X y, Eigen::VectorXd J, const Mat3& O) const {
+    Particles p{std::move(y), std::move(J), O, {}, 0};
+    p.field = evaluate(p.y);
+    p.energy = energy(p);
+    return p;
+  }
+  double norm() const { return target_.colwise().squaredNorm() * weights_; }
+
+  /// Gauss-Newton with fields of one degree. Appends the accepted fields and energies.
+  Particles minimise(Particles p, int degree, int steps, std::vector<SphereVectorField>& fields,
+                     std::vector<double>& energies) const {
+    double damping = options_->damping;
+    for (int step = 0; step < steps; ++step) {
+      const ChartBatch charts = charts_at(p.y);
+      const HarmonicJets basis = harmonic_jets(p.y, degree);
+      const NormalEquations system = linearise(p, charts, basis, degree);
+      std::optional<Particles> next;
+      SphereVectorField v = SphereVectorField::zero(degree);
+      for (int attempt = 0; attempt < 8 && !next; ++attempt) {
+        const Mat3 turn = solve(system, damping, v);
+        const SphereDisplacement moved = displace(v, charts, basis);
+        const Eigen::VectorXd J = p.J.cwiseProduct(moved.J);
+        if (moved.J.minCoeff() >= options_->min_step_jacobian && J.minCoeff() >= options_->min_jacobian &&
+            moved.longest_step <= options_->longest_step) {
+          Particles trial = at(moved.y, J, p.O * turn);
+          if (trial.energy < p.energy) next = std::move(trial);
+        }
+        if (!next) damping = std::max(damping * 4, 1e-8);
+      }
+      if (!next) break;
+      const double gain = (p.energy - next->energy) / p.energy;
+      p = std::move(*next);
+      fields.push_back(std::move(v));
+      energies.push_back(p.energy);
+      damping = std::max(damping / 3, 1e-4 * options_->damping);
+      if (gain < options_->tolerance) break;
+    }
+    return p;
+  }
+
+ private:
+  static constexpr Index chunk_size = 128;  // points; a fixed number, so that sums do not depend on the thread count
+
+  struct NormalEquations {
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd right;
+    Eigen::ArrayXd degrees;  ///< l of each harmonic from degree 1
+  };
+
+  template <class Body>
+  void for_chunks(Index n, const Body& body) const {
+    const int chunks = static_cast<int>((n + chunk_size - 1) / chunk_size);
+    parallel_for(chunks, options_->threads, [&](int c) {
+      const Index first = c * chunk_size;
+      body(c, first, std::min(chunk_size, n - first));
+    });
+  }
+
+  HalfDensityJets evaluate(const Mat3X& y) const {
+    const Index rows = second_.components(), n = y.cols();
+    HalfDensityJets all{Eigen::MatrixXd(rows, n), Eigen::MatrixXd(rows, n), Eigen::MatrixXd(rows, n)};
+    for_chunks(n, [&](int, Index first, Index count) {
+      const HalfDensityJets part = second_(charts_at(y.middleCols(first, count)));
+      all.g.middleCols(first, count) = part.g;
+      all.g1.middleCols(first, count) = part.g1;
+      all.g2.middleCols(first, count) = part.g2;
+    });
+    return all;
+  }
+
+  double energy(const Particles& p) const {
+    const Eigen::MatrixXd moved = p.field.g * p.J.cwiseSqrt().asDiagonal();
+    return (target_ - rotate_blocks(p.O, moved)).colwise().squaredNorm() * weights_;
+  }
+
+  NormalEquations linearise(const Particles& p, const ChartBatch& charts, const HarmonicJets& basis, int degree) const {
+    const Index count = harmonic_count(degree) - 1, unknowns = 2 * count + 3, n = p.y.cols();
+    const Eigen::MatrixXd target = rotate_blocks(p.O.transpose(), target_);
+    std::vector<Eigen::MatrixXd> matrices(std::size_t((n + chunk_size - 1) / chunk_size));
+    std::vector<Eigen::VectorXd> rights(matrices.size());
+    NormalEquations system{{}, {}, harmonic_degrees(degree).tail(count)};
+    const Eigen::RowVectorXd half_divergence = -0.5 * (system.degrees * (system.degrees + 1)).matrix().transpose();
+    for_chunks(n, [&](int chunk, Index first, Index points) {
+      Eigen::MatrixXd rows(6 * points, unknowns);
+      Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
+      Eigen::Matrix<double, 6, Eigen::Dynamic> B = Eigen::MatrixXd::Zero(6, unknowns);
+      B.rightCols<3>().bottomRows<3>().setIdentity();
+      for (Index i = first; i < first + points; ++i) {
+        const auto along = [&](const Mat3X& e) -> Eigen::RowVectorXd {
+          return e(0, i) * basis.dx.row(i).tail(count) + e(1, i) * basis.dy.row(i).tail(count) +
+                 e(2, i) * basis.dz.row(i).tail(count);
+        };
+        const Eigen::RowVectorXd g1 = along(charts.e1), g2 = along(charts.e2);
+        B.row(0).head(count) = half_divergence.cwiseProduct(basis.y.row(i).tail(count));
+        B.row(1).head(count) = g1;
+        B.row(1).segment(count, count) = -g2;
+        B.row(2).head(count) = g2;
+        B.row(2).segment(count, count) = g1;
+        const Eigen::MatrixX<double> U = columns(p.field, i);
+        const double root = std::sqrt(p.J[i]);
+        const Eigen::VectorXd residual = target.col(i) - root * p.field.g.col(i);
+        right += weights_[i] * root * (B.transpose() * (U.transpose() * residual));
+        Eigen::Matrix<double, 6, 6> gram = weights_[i] * p.J[i] * (U.transpose() * U);
+        gram.diagonal().array() += 1e-14 * gram.trace();
+        rows.middleRows(6 * (i - first), 6).noalias() = gram.llt().matrixU() * B;
+      }
+      auto& matrix = matrices[std::size_t(chunk)] = Eigen::MatrixXd::Zero(unknowns, unknowns);
+      matrix.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+      rights[std::size_t(chunk)] = std::move(right);
+    });
+    system.matrix = std::accumulate(matrices.begin() + 1, matrices.end(), matrices.front());
+    system.right = std::accumulate(rights.begin() + 1, rights.end(), rights.front());
+    return system;
+  }
+
+  /// [g, g1, g2, e_x x g, e_y x g, e_z x g] of point i, components x 6.
+  static Eigen::MatrixX<double> columns(const HalfDensityJets& field, Index i) {
+    Eigen::MatrixXd U(field.g.rows(), 6);
+    U.col(0) = field.g.col(i);
+    U.col(1) = field.g1.col(i);
+    U.col(2) = field.g2.col(i);
+    for (Index r = 0; r < U.rows(); r += 3) {
+      const Vec3d g = field.g.col(i).segment<3>(r);
+      for (int k = 0; k < 3; ++k) U.block<3, 1>(r, 3 + k) = Vec3d::Unit(k).cross(g);
+    }
+    return U;
+  }
+
+  /// Fills v with the damped step and returns its rotation, to be composed on the right of O.
+  static Mat3 solve(const NormalEquations& system, double damping, SphereVectorField& v) {
+    const Index count = system.degrees.size();
+    const Eigen::VectorXd penalty = (system.degrees * (system.degrees + 1)).square();
+    Eigen::MatrixXd matrix = system.matrix;
+    matrix.diagonal().head(count) += damping * penalty;
+    matrix.diagonal().segment(count, count) += damping * penalty;
+    matrix.diagonal().array() += 1e-10 * system.matrix.trace() / double(matrix.rows());
+    const Eigen::VectorXd x = matrix.selfadjointView<Eigen::Lower>().ldlt().solve(system.right);
+    v.a.tail(count) = x.head(count);
+    v.b.tail(count) = x.segment(count, count);
+    return rotation_exp(x.tail<3>());
+  }
+
+  Eigen::MatrixXd target_;
+  HalfDensityField second_;
+  Eigen::VectorXd weights_;
+  const SpatialOptions* options_;
+};
+
+}  // namespace detail
+}  // namespace dsns

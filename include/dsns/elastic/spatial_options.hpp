@@ -1,0 +1,58 @@
+#pragma once
+/// Options and results of spatial registration.
+#include <dsns/sphere/diffeomorphism.hpp>
+
+#include <string>
+#include <vector>
+
+namespace dsns {
+
+/// Where to look for the rotation to start from.
+enum class RotationSearch {
+  full,     ///< any turn of the body and any turn of its sphere: for one body, or bodies placed at will
+  upright,  ///< bodies stand alike (same up, same heading): turns of the sphere only, scored on positions
+};
+
+/// One stage, coarse to fine: fields of `field_degree` move surfaces cut at `surface_degree` and smoothed by the heat kernel.
+struct SpatialLevel {
+  int field_degree;
+  int surface_degree;
+  double smoothing;        ///< heat time on the unit sphere
+  double position_weight;  ///< 1: positions alone, 0: the SRNF alone
+};
+
+struct SpatialOptions {
+  RotationSearch search = RotationSearch::full;
+  std::vector<SpatialLevel> levels = {{1, 6, 0.05, 0.5},  {2, 6, 0.05, 0.5},  {3, 8, 0.03, 0.5},   {4, 8, 0.02, 0.5},
+                                      {6, 10, 0.01, 0.5}, {8, 12, 0.004, 0.5}, {10, 16, 0.0, 0.5}, {10, 16, 0.0, 0.0}};
+  int steps_per_level = 8;
+  int latitudes = 24;       ///< quadrature of latitudes x 2 latitudes nodes
+  int rotations = 600;      ///< candidates of the search
+  int refined = 5;          ///< best candidates that are refined before one is chosen
+  double damping = 1e-3;    ///< times (l(l + 1))^2: what a field of degree l must gain to be used
+  double tolerance = 1e-3;  ///< a level ends when a step lowers the energy by less than this share of it
+  double min_step_jacobian = 0.3;  ///< of a single increment
+  double min_jacobian = 0.02;      ///< of the composition, at the quadrature nodes
+  double longest_step = 0.8;       ///< radians
+  int threads = 1;
+};
+
+/// Energies are |h1 - O (h2 * gamma)|^2 of the last level's fields, squared length unit.
+struct SpatialSummary {
+  double energy_before = 0;  ///< at the identity
+  double energy_after = 0;
+  double norm = 0;          ///< |h1|^2, to compare the energies with
+  double min_jacobian = 1;  ///< over a grid four times finer than the fields' bandwidth
+  int steps = 0;
+  std::vector<double> energies;  ///< after every accepted step, of the level it belongs to
+  std::string stop;              ///< why it ended
+};
+
+/// F2 is brought to F1 by O F2(gamma(s)).
+struct SpatialResult {
+  Mat3 rotation = Mat3::Identity();
+  SphereDiffeomorphism gamma;
+  SpatialSummary summary;
+};
+
+}  // namespace dsns

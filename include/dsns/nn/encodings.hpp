@@ -1,0 +1,66 @@
+#pragma once
+/// What the network sees of a point s of the sphere and a time t: functions of them that span many scales, so that the
+/// network need not make fine detail out of plain coordinates. Space and time are encoded apart, one above the other.
+#include <dsns/core/types.hpp>
+#include <dsns/sphere/harmonics.hpp>
+
+namespace dsns {
+
+/// Space: real spherical harmonics of degree 1 to `harmonic_degree` (0: none), scaled to mean square 1, and/or
+/// sin, cos(space_base 2^k x) of each coordinate, k < space_octaves.
+/// Time: sin, cos(pi k t), k = 1 .. time_frequencies, and/or sin, cos(time_base 2^k t), k < time_octaves.
+struct SurfaceEncoding {
+  int harmonic_degree = 8;
+  int space_octaves = 0;
+  double space_base = 0.1;
+  int time_frequencies = 6;
+  int time_octaves = 0;
+  double time_base = 0.1;
+
+  Index space_features() const {
+    return (harmonic_degree > 0 ? harmonic_count(harmonic_degree) - 1 : 0) + 6 * Index(space_octaves);
+  }
+  Index time_features() const { return 2 * (Index(time_frequencies) + time_octaves); }
+  Index features() const { return space_features() + time_features(); }
+
+  /// T any scalar: derivatives ride along.
+  template <class T>
+  Eigen::VectorX<T> space(const Vec3<T>& s) const {
+    Eigen::VectorX<T> out(space_features());
+    Index row = 0;
+    if (harmonic_degree > 0) {
+      row = harmonic_count(harmonic_degree) - 1;
+      out.head(row) = harmonics<T>(s, harmonic_degree).tail(row) * std::sqrt(4 * pi);
+    }
+    for (int k = 0; k < space_octaves; ++k)
+      for (const T& x : s) append_waves(out, row, T(std::ldexp(space_base, k) * x));
+    return out;
+  }
+  template <class T>
+  Eigen::VectorX<T> time(const T& t) const {
+    Eigen::VectorX<T> out(time_features());
+    Index row = 0;
+    for (int k = 1; k <= time_frequencies; ++k) append_waves(out, row, T(pi * k * t));
+    for (int k = 0; k < time_octaves; ++k) append_waves(out, row, T(std::ldexp(time_base, k) * t));
+    return out;
+  }
+
+ private:
+  template <class T>
+  static void append_waves(Eigen::VectorX<T>& out, Index& row, const T& angle) {
+    using std::cos, std::sin;
+    out[row++] = sin(angle);
+    out[row++] = cos(angle);
+  }
+};
+
+/// The harmonic embedding of the D-SNS paper: sin, cos(0.1 2^k x), k = 0 .. 9, of x, y, z and t; 80 features.
+inline SurfaceEncoding paper_encoding() {
+  SurfaceEncoding e;
+  e.harmonic_degree = 0;
+  e.space_octaves = e.time_octaves = 10;
+  e.time_frequencies = 0;
+  return e;
+}
+
+}  // namespace dsns

@@ -1,0 +1,145 @@
+#pragma once
+/// Diffeomorphisms of the sphere as gamma = exp(v_n) o ... o exp(v_1) o R: a rotation, then smooth fields.
+#include <dsns/sphere/quadrature.hpp>
+#include <dsns/sphere/rotations.hpp>
+#include <dsns/sphere/vector_field.hpp>
+
+#include <Eigen/LU>
+#include <random>
+#include <vector>
+
+namespace dsns {
+
+class SphereDiffeomorphism {
+ public:
+  explicit SphereDiffeomorphism(const Mat3& rotation = Mat3::Identity()) : rotation_(rotation) {}
+
+  const Mat3& rotation() const { return rotation_; }
+  const std::vector<SphereVectorField>& increments() const { return increments_; }
+  /// Composes exp(v) on the left: gamma becomes exp(v) o gamma.
+  void append(SphereVectorField v) { increments_.push_back(std::move(v)); }
+
+  /// gamma(s); T any scalar, so derivatives of every order are exact.
+  template <class T>
+  Vec3<T> operator()(const Vec3<T>& s) const {
+    Vec3<T> y;
+    for (int k = 0; k < 3; ++k) y[k] = rotation_(k, 0) * s[0] + rotation_(k, 1) * s[1] + rotation_(k, 2) * s[2];
+    for (const auto& v : increments_) y = exponential(v, y);
+    return y;
+  }
+
+  /// gamma at the columns of s with its differential on the charts' frames and its Jacobian.
+  SphereDisplacement displacement(const ChartBatch& charts) const;
+
+  /// gamma at the unit columns of s, 3 x n.
+  Mat3X operator()(const Mat3X& s) const;
+
+  /// The points that gamma sends to the unit columns of y: Newton's method for each increment in turn.
+  /// accuracy 1e-12 radians [sphere/diffeomorphism_test]
+  /// throws   Error where Newton's method does not converge, which a diffeomorphism with J > 0 does not show
+  Mat3X inverse(const Mat3X& y) const;
+
+ private:
+  Mat3 rotation_;
+  std::vector<SphereVectorField> increments_;
+};
+
+inline SphereDisplacement SphereDiffeomorphism::displacement(const ChartBatch& charts) const {
+  constexpr Index tile = 64;  // points that go through all increments together, so that their harmonics stay in cache
+  const Index n = charts.size();
+  SphereDisplacement total{(rotation_ * charts.s).colwise().normalized(), rotation_ * charts.e1, rotation_ * charts.e2,
+                           Eigen::VectorXd::Ones(n)};
+  for (Index first = 0; first < n; first += tile) {
+    const Index count = std::min(tile, n - first);
+    for (const auto& v : increments_) {
+      const ChartBatch here = charts_at(total.y.middleCols(first, count));
+      const SphereDisplacement step = displace(v, here, harmonic_jets(here.s, v.degree));
+      for (Index i = 0; i < count; ++i)
+        for (Mat3X* image : {&total.y1, &total.y2}) {
+          const Vec3d t = image->col(first + i);
+          image->col(first + i) = here.e1.col(i).dot(t) * step.y1.col(i) + here.e2.col(i).dot(t) * step.y2.col(i);
+        }
+      total.y.middleCols(first, count) = step.y;
+      total.J.segment(first, count).array() *= step.J.array();
+      total.longest_step = std::max(total.longest_step, step.longest_step);
+    }
+  }
+  return total;
+}
+
+inline Mat3X SphereDiffeomorphism::operator()(const Mat3X& s) const {
+  Mat3X y(3, s.cols());
+  for (Index i = 0; i < s.cols(); ++i) y.col(i) = (*this)(Vec3d(s.col(i))).normalized();
+  return y;
+}
+
+inline Mat3X SphereDiffeomorphism::inverse(const Mat3X& y) const {
+  Mat3X target = y;
+  for (auto v = increments_.rbegin(); v != increments_.rend(); ++v) {
+    SphereVectorField back{v->degree, -v->a, -v->b};
+    ChartBatch here = charts_at(target);
+    Mat3X s = displace(back, here, harmonic_jets(here.s, v->degree)).y;
+    double worst = 1;
+    for (int iteration = 0; iteration < 30 && worst > 1e-14; ++iteration) {
+      here = charts_at(s);
+      const SphereDisplacement image = displace(*v, here, harmonic_jets(s, v->degree));
+      worst = 0;
+      for (Index i = 0; i < s.cols(); ++i) {
+        const Vec3d miss = target.col(i) - image.y.col(i);
+        Eigen::Matrix<double, 3, 2> D;
+        D << image.y1.col(i), image.y2.col(i);
+        const Eigen::Matrix2d normal = D.transpose() * D;
+        Eigen::Vector2d step = normal.inverse() * (D.transpose() * miss);
+        const double length = step.norm();
+        if (length > 0.3) step *= 0.3 / length;  // far from the solution the linear model may overshoot
+        s.col(i) = (s.col(i) + here.e1.col(i) * step[0] + here.e2.col(i) * step[1]).normalized();
+        worst = std::max(worst, miss.norm());
+      }
+    }
+    require<Error>(worst < 1e-9, "SphereDiffeomorphism::inverse: Newton's method stopped ", worst,
+                   " radians away, the map is not invertible there");
+    target = s;
+  }
+  return (rotation_.transpose() * target).colwise().normalized();
+}
+
+/// Proof on a grid that gamma is a diffeomorphism: four times finer than the fields' bandwidth.
+struct DiffeomorphismCertificate {
+  double min_jacobian = 0;
+  Index points = 0;
+  bool holds() const { return min_jacobian > 0; }
+};
+
+inline DiffeomorphismCertificate certify(const SphereDiffeomorphism& gamma) {
+  int degree = 4;
+  for (const auto& v : gamma.increments()) degree = std::max(degree, v.degree);
+  const SphereQuadrature grid = sphere_quadrature(4 * degree);
+  return {gamma.displacement(charts_at(grid.points)).J.minCoeff(), grid.size()};
+}
+
+/// A random smooth diffeomorphism without rotation, three increments of degree up to `degree`, whose displacement is
+/// `size` radians in the root mean square (of the sum of steps; compositions fall a little short).
+inline SphereDiffeomorphism random_diffeomorphism(std::uint64_t seed, int degree, double size) {
+  constexpr int increments = 3;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const SphereQuadrature q = sphere_quadrature(degree + 2);
+  SphereDiffeomorphism gamma;
+  for (int k = 0; k < increments; ++k) {
+    SphereVectorField v = SphereVectorField::zero(degree);
+    const Eigen::ArrayXd l = harmonic_degrees(degree);
+    for (Index i = 1; i < v.a.size(); ++i) {  // decay faster than the degree keeps the fields smooth
+      v.a[i] = normal(random) * std::pow(l[i], -2.5);
+      v.b[i] = normal(random) * std::pow(l[i], -2.5);
+    }
+    double square = 0;
+    for (Index i = 0; i < q.size(); ++i) square += q.weights[i] * evaluate<double>(v, q.points.col(i)).squaredNorm();
+    const double scale = size / increments / std::sqrt(square / (4 * pi));
+    v.a *= scale;
+    v.b *= scale;
+    gamma.append(std::move(v));
+  }
+  return gamma;
+}
+
+}  // namespace dsns

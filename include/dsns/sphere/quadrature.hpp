@@ -1,0 +1,78 @@
+#pragma once
+/// Quadrature on the sphere: Gauss-Legendre in z times equidistant longitudes.
+#include <dsns/core/errors.hpp>
+#include <dsns/core/types.hpp>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace dsns {
+
+/// Nodes (unit, 3 x n) and weights (n, sum 4 pi).
+struct SphereQuadrature {
+  Mat3X points;
+  Eigen::VectorXd weights;
+  Index size() const { return points.cols(); }
+};
+
+/// Nodes and weights of the n-point Gauss-Legendre rule on [-1, 1], exact for polynomials of degree 2n - 1.
+struct GaussLegendre {
+  Eigen::VectorXd nodes, weights;
+};
+
+/// source   Golub and Welsch 1969 for the start, two Newton steps on the Legendre recurrence for the last digits
+inline GaussLegendre gauss_legendre(int n) {
+  require(n >= 1, "gauss_legendre: ", n, " nodes, give at least 1");
+  Eigen::VectorXd off(n > 1 ? n - 1 : 0);
+  for (int k = 1; k < n; ++k) off[k - 1] = k / std::sqrt(4.0 * k * k - 1);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(Eigen::VectorXd::Zero(n), off, Eigen::EigenvaluesOnly);
+  GaussLegendre rule{solver.eigenvalues(), Eigen::VectorXd(n)};
+  for (int i = 0; i < n; ++i) {
+    double derivative = 1;
+    for (int step = 0; step < 3; ++step) {
+      const double x = rule.nodes[i];
+      double previous = 1, value = x;
+      for (int k = 2; k <= n; ++k) {
+        const double next = ((2 * k - 1) * x * value - (k - 1) * previous) / k;
+        previous = value;
+        value = next;
+      }
+      derivative = n * (x * value - previous) / (x * x - 1);
+      if (step < 2) rule.nodes[i] -= value / derivative;
+    }
+    const double x = rule.nodes[i];
+    rule.weights[i] = 2 / ((1 - x * x) * derivative * derivative);
+  }
+  return rule;
+}
+
+/// n x 2n nodes, exact for spherical polynomials of degree 2n - 1.
+/// accuracy 1e-13 [sphere/quadrature_test: orthonormality of harmonics]
+inline SphereQuadrature sphere_quadrature(int n) {
+  const GaussLegendre rule = gauss_legendre(n);
+  const int sectors = 2 * n;
+  SphereQuadrature q{Mat3X(3, n * sectors), Eigen::VectorXd(n * sectors)};
+  for (int i = 0, k = 0; i < n; ++i) {
+    const double z = rule.nodes[i], r = std::sqrt(1 - z * z);
+    for (int j = 0; j < sectors; ++j, ++k) {
+      const double longitude = 2 * pi * (j + 0.5) / sectors;
+      q.points.col(k) = Vec3d(r * std::cos(longitude), r * std::sin(longitude), z).normalized();
+      q.weights[k] = rule.weights[i] * 2 * pi / sectors;
+    }
+  }
+  return q;
+}
+
+/// n nearly equidistant points on a spiral, equal weights: for searches, not for integrals.
+inline SphereQuadrature fibonacci_sphere(int n) {
+  require(n >= 1, "fibonacci_sphere: ", n, " points, give at least 1");
+  SphereQuadrature q{Mat3X(3, n), Eigen::VectorXd::Constant(n, 4 * pi / n)};
+  for (int i = 0; i < n; ++i) {
+    const double z = 1 - (2 * i + 1.0) / n, r = std::sqrt(1 - z * z), longitude = i * pi * (3 - std::sqrt(5.0));
+    q.points.col(i) = Vec3d(r * std::cos(longitude), r * std::sin(longitude), z).normalized();
+  }
+  return q;
+}
+
+}  // namespace dsns

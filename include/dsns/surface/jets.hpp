@@ -1,0 +1,212 @@
+#pragma once
+/// What a surface is, and the one place where its derivatives come from.
+///
+/// A surface is a functor f(s) on the unit sphere, a moving surface a functor F(s, t) with t in [0, 1]. Algorithms ask for
+///   positions(f, s)      positions(F, s, t)      values at the columns of s, 3 x n
+///   jets(f, charts)      jets(F, charts, t)      values with first and second derivatives in the charts
+///                        velocities(F, s, t)     dF/dt, 3 x n
+/// Each takes the member function of that name where the surface has one (the way of batches: networks, sampled meshes),
+/// else a free function found by argument-dependent lookup (jets only), else the call operator with a differentiating
+/// scalar: f(Vec3<Jet2<double>>), F(Vec3<Dual<double, 1>>, Dual<double, 1>).
+#include <dsns/autodiff/dual.hpp>
+#include <dsns/autodiff/eigen.hpp>
+#include <dsns/autodiff/jet2.hpp>
+#include <dsns/sphere/charts.hpp>
+
+#include <concepts>
+
+namespace dsns {
+
+/// Values and derivatives of n surface points in their charts; all 3 x n.
+struct SurfaceJets {
+  Mat3X f, fu, fv, fuu, fuv, fvv;
+
+  explicit SurfaceJets(Index n) : f(3, n), fu(3, n), fv(3, n), fuu(3, n), fuv(3, n), fvv(3, n) {}
+  Index size() const { return f.cols(); }
+};
+
+namespace detail {
+
+using SpatialJet = Jet2<double, 2>;
+using TimeDual = Dual<double, 1>;
+
+/// The chart of point i as a 2-jet: s_u = e1, s_v = e2, s_uu = s_vv = -s, s_uv = 0.
+inline Vec3<SpatialJet> chart_jet(const ChartBatch& c, Index i) {
+  Vec3<SpatialJet> s;
+  for (int k = 0; k < 3; ++k) {
+    s[k].f = c.s(k, i);
+    s[k].g = {c.e1(k, i), c.e2(k, i)};
+    s[k].h = {-c.s(k, i), 0.0, -c.s(k, i)};
+  }
+  return s;
+}
+
+inline void store(SurfaceJets& out, Index i, const Vec3<SpatialJet>& p) {
+  for (int k = 0; k < 3; ++k) {
+    out.f(k, i) = p[k].f;
+    out.fu(k, i) = p[k].g[0];
+    out.fv(k, i) = p[k].g[1];
+    out.fuu(k, i) = p[k].h[0];
+    out.fuv(k, i) = p[k].h[1];
+    out.fvv(k, i) = p[k].h[2];
+  }
+}
+
+}  // namespace detail
+
+namespace detail::jets_lookup {
+
+void jets() = delete;  // poison pill: below, only argument-dependent lookup may find an overload
+
+// Each asks for the exact return type: Eigen's constructors would let a double-only functor pass as convertible.
+template <class S>
+concept MemberJets = requires(const S& f, const ChartBatch& c) {
+  { f.jets(c) } -> std::same_as<SurfaceJets>;
+};
+template <class S>
+concept FreeJets = requires(const S& f, const ChartBatch& c) {
+  { jets(f, c) } -> std::same_as<SurfaceJets>;
+};
+template <class S>
+concept ScalarJets = requires(const S& f, const Vec3<SpatialJet>& s) {
+  { f(s) } -> std::same_as<Vec3<SpatialJet>>;
+};
+template <class F>
+concept MovingMemberJets = requires(const F& f, const ChartBatch& c, double t) {
+  { f.jets(c, t) } -> std::same_as<SurfaceJets>;
+};
+template <class F>
+concept MovingFreeJets = requires(const F& f, const ChartBatch& c, double t) {
+  { jets(f, c, t) } -> std::same_as<SurfaceJets>;
+};
+template <class F>
+concept MovingScalarJets = requires(const F& f, const Vec3<SpatialJet>& s, SpatialJet t) {
+  { f(s, t) } -> std::same_as<Vec3<SpatialJet>>;
+};
+
+struct JetsFunction {
+  template <class S>
+    requires MemberJets<S> || FreeJets<S> || ScalarJets<S>
+  [[nodiscard]] SurfaceJets operator()(const S& f, const ChartBatch& c) const {
+    if constexpr (MemberJets<S>) {
+      return f.jets(c);
+    } else if constexpr (FreeJets<S>) {
+      return jets(f, c);
+    } else {
+      SurfaceJets out(c.size());
+      for (Index i = 0; i < c.size(); ++i) store(out, i, f(chart_jet(c, i)));
+      return out;
+    }
+  }
+  template <class F>
+    requires MovingMemberJets<F> || MovingFreeJets<F> || MovingScalarJets<F>
+  [[nodiscard]] SurfaceJets operator()(const F& f, const ChartBatch& c, double t) const {
+    if constexpr (MovingMemberJets<F>) {
+      return f.jets(c, t);
+    } else if constexpr (MovingFreeJets<F>) {
+      return jets(f, c, t);
+    } else {
+      SurfaceJets out(c.size());
+      for (Index i = 0; i < c.size(); ++i) store(out, i, f(chart_jet(c, i), SpatialJet(t)));
+      return out;
+    }
+  }
+};
+
+}  // namespace detail::jets_lookup
+
+/// Second-order jets of a surface, or of a moving surface at time t, at n charts.
+inline constexpr detail::jets_lookup::JetsFunction jets{};
+
+/// Sends unit vectors to R^3 and has 2-jets.
+template <class S>
+concept Surface = requires(const S& f, const Vec3d& s, const ChartBatch& c) {
+  { f(s) } -> std::same_as<Vec3d>;
+  { dsns::jets(f, c) } -> std::same_as<SurfaceJets>;
+};
+
+namespace detail {
+
+template <class F>
+concept MemberVelocities = requires(const F& f, const Mat3X& s, double t) {
+  { f.velocities(s, t) } -> std::same_as<Mat3X>;
+};
+template <class F>
+concept ScalarVelocities = requires(const F& f, const Vec3<TimeDual>& s, TimeDual t) {
+  { f(s, t) } -> std::same_as<Vec3<TimeDual>>;
+};
+
+}  // namespace detail
+
+/// Sends a unit vector and a time in [0, 1] to R^3, has 2-jets in space and a derivative in time.
+template <class F>
+concept AnimatedSurface = requires(const F& f, const Vec3d& s, const ChartBatch& c, double t) {
+  { f(s, t) } -> std::same_as<Vec3d>;
+  { dsns::jets(f, c, t) } -> std::same_as<SurfaceJets>;
+  requires detail::MemberVelocities<F> || detail::ScalarVelocities<F>;
+};
+
+/// Values of a surface at the n columns of s.
+template <Surface S>
+Mat3X positions(const S& f, const Mat3X& s) {
+  if constexpr (requires { { f.positions(s) } -> std::same_as<Mat3X>; }) {
+    return f.positions(s);
+  } else {
+    Mat3X out(3, s.cols());
+    for (Index i = 0; i < s.cols(); ++i) out.col(i) = f(Vec3d(s.col(i)));
+    return out;
+  }
+}
+
+/// Values of a moving surface at the n columns of s and time t.
+template <AnimatedSurface F>
+Mat3X positions(const F& f, const Mat3X& s, double t) {
+  if constexpr (requires { { f.positions(s, t) } -> std::same_as<Mat3X>; }) {
+    return f.positions(s, t);
+  } else {
+    Mat3X out(3, s.cols());
+    for (Index i = 0; i < s.cols(); ++i) out.col(i) = f(Vec3d(s.col(i)), t);
+    return out;
+  }
+}
+
+/// dF/dt at the n columns of s and time t: length unit per clip.
+template <AnimatedSurface F>
+Mat3X velocities(const F& f, const Mat3X& s, double t) {
+  if constexpr (detail::MemberVelocities<F>) {
+    return f.velocities(s, t);
+  } else {
+    Mat3X out(3, s.cols());
+    detail::TimeDual time(t);
+    time.g = {1.0};
+    for (Index i = 0; i < s.cols(); ++i) {
+      const Vec3<detail::TimeDual> p = f(Vec3<detail::TimeDual>(s.col(i).template cast<detail::TimeDual>()), time);
+      for (int k = 0; k < 3; ++k) out(k, i) = p[k].g[0];
+    }
+    return out;
+  }
+}
+
+/// A moving surface frozen at one time: a Surface. Refers to the moving surface, which must outlive it.
+template <class F>
+class AtTime {
+ public:
+  AtTime(const F& surface, double t) : surface_(&surface), t_(t) {}
+
+  Vec3d operator()(const Vec3d& s) const { return (*surface_)(s, t_); }
+  SurfaceJets jets(const ChartBatch& c) const { return dsns::jets(*surface_, c, t_); }
+  Mat3X positions(const Mat3X& s) const { return dsns::positions(*surface_, s, t_); }
+
+ private:
+  const F* surface_;
+  double t_;
+};
+
+template <AnimatedSurface F>
+AtTime<F> at_time(const F& surface, double t) {
+  return {surface, t};
+}
+template <AnimatedSurface F>
+AtTime<F> at_time(const F&& surface, double t) = delete;
+
+}  // namespace dsns

@@ -1,0 +1,13 @@
+#include <dsns/core/types.hpp>
+
+#include <cmath>
+#include <type_traits>
+
+#include "catch.hpp"
+
+TEST_CASE("points are columns and pi is pi", "[types]") {
+  STATIC_REQUIRE(dsns::Mat3X::RowsAtCompileTime == 3);
+  STATIC_REQUIRE(dsns::Faces::RowsAtCompileTime == 3);
+  STATIC_REQUIRE(std::is_same_v<dsns::Faces::Scalar, int>);
+  CHECK(dsns::pi == std::acos(-1.0));
+}

@@ -1,0 +1,11 @@
+# cmake -DNM=... -DPROGRAM=... -P inline_test.cmake: no strong symbol of namespace dsns in the program.
+cmake_minimum_required(VERSION 3.22)
+execute_process(COMMAND "${NM}" --demangle --defined-only "${PROGRAM}" OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+if(NOT symbols MATCHES " [WVu] dsns::")
+  message(FATAL_ERROR "${PROGRAM} has no symbols of dsns to look at")
+endif()
+string(REGEX MATCHALL " [TDBR] (guard variable for )?dsns::[^\n]*" strong "${symbols}")
+if(strong)
+  list(JOIN strong "\n  " strong)
+  message(FATAL_ERROR "not inline, or a namespace-scope variable without inline:\n  ${strong}")
+endif()
