@@ -8,8 +8,8 @@ using Catch::Approx;
 #endif
 
 /// Leaves a test case that cannot run here; ctest counts it as skipped, not as passed.
-#define DSNS_SKIP(reason)       \
-  do {                          \
+#define DSNS_SKIP(reason)        \
+  do {                           \
     WARN("skipped: " << reason); \
-    return;                     \
+    return;                      \
   } while (false)

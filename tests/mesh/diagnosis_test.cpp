@@ -27,7 +27,7 @@ TEST_CASE("a torus has genus 1, a cylinder two holes, a Moebius strip one", "[me
   CHECK(torus.euler_characteristic == 0);
   CHECK(torus.genus == 1);
 
-  const auto cylinder = diagnose(test::ribbon(9, false), 18);
+  const auto cylinder = diagnose(test::cylinder(9), 18);
   CHECK(cylinder.boundary_loops == 2);
   CHECK(cylinder.boundary_edges == 18);
   CHECK(cylinder.euler_characteristic == 0);
@@ -35,7 +35,7 @@ TEST_CASE("a torus has genus 1, a cylinder two holes, a Moebius strip one", "[me
   CHECK_FALSE(cylinder.closed);
   CHECK_FALSE(cylinder.genus.has_value());
 
-  const auto moebius = diagnose(test::ribbon(9, true), 18);
+  const auto moebius = diagnose(test::moebius_strip(9), 18);
   CHECK(moebius.boundary_loops == 1);
   CHECK(moebius.boundary_edges == 18);
   CHECK(moebius.euler_characteristic == 0);

@@ -204,7 +204,7 @@ TEST_CASE("surfaces that no sphere can be mapped to are refused", "[mesh]") {
 
   MeshSequence moebius;
   moebius.name = "moebius";
-  moebius.faces = test::ribbon(9, true);
+  moebius.faces = test::moebius_strip(9);
   moebius.frames.assign(2, Mat3X::Random(3, 18));
   CHECK(contains(refusal(moebius), "one-sided"));
 

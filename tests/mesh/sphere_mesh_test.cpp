@@ -25,7 +25,8 @@ void check_sphere(const TriangleMesh& sphere) {
   CHECK(closed_and_oriented(sphere.faces));
   CHECK(sphere.vertices.cols() * 2 - 4 == sphere.faces.cols());  // Euler: one component without handles
   const Mat3X normals = face_normals(sphere.vertices, sphere.faces);
-  for (Index f = 0; f < sphere.faces.cols(); ++f) REQUIRE(normals.col(f).dot(sphere.vertices.col(sphere.faces(0, f))) > 0);
+  for (Index f = 0; f < sphere.faces.cols(); ++f)
+    REQUIRE(normals.col(f).dot(sphere.vertices.col(sphere.faces(0, f))) > 0);
 }
 
 }  // namespace
@@ -38,7 +39,7 @@ TEST_CASE("an icosphere has 10 * 4^level + 2 unit vertices and outward faces", "
 }
 
 TEST_CASE("the icosahedron's area and volume are the closed forms", "[sphere_mesh]") {
-  // Edge a of the icosahedron in the unit sphere: a sin(2 pi / 5) = 1; area 5 sqrt(3) a^2; volume 5/12 (3 + sqrt 5) a^3.
+  // Edge a: a sin(2 pi / 5) = 1; area 5 sqrt(3) a^2; volume 5/12 (3 + sqrt 5) a^3.
   const double edge = 1 / std::sin(2 * pi / 5);
   CHECK(area(icosphere(0)) == Approx(5 * std::sqrt(3.0) * edge * edge).epsilon(1e-14));
   CHECK(volume(icosphere(0)) == Approx(5.0 / 12 * (3 + std::sqrt(5.0)) * edge * edge * edge).epsilon(1e-14));

@@ -105,8 +105,7 @@ inline TriangleMesh relabelled(const TriangleMesh& mesh, unsigned seed) {
   for (Index v = 0; v < mesh.vertices.cols(); ++v) out.vertices.col(vertex[std::size_t(v)]) = mesh.vertices.col(v);
   for (Index f = 0; f < mesh.faces.cols(); ++f) {
     const int turn = uniform.below(3);
-    for (int k = 0; k < 3; ++k)
-      out.faces((k + turn) % 3, face[std::size_t(f)]) = vertex[std::size_t(mesh.faces(k, f))];
+    for (int k = 0; k < 3; ++k) out.faces((k + turn) % 3, face[std::size_t(f)]) = vertex[std::size_t(mesh.faces(k, f))];
   }
   return out;
 }

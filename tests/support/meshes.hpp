@@ -21,16 +21,22 @@ inline TriangleMesh torus(int around, int across) {
   return mesh;
 }
 
-/// A closed band of n squares over 2 n vertices: a cylinder, or a Moebius strip where it is twisted.
-inline Faces ribbon(int n, bool twisted) {
+/// A closed band of n squares between vertices 0, 2, 4, ... and 1, 3, 5, ...
+inline Faces cylinder(int n) {
   Faces faces(3, 2 * n);
   for (int i = 0; i < n; ++i) {
-    const bool swapped = twisted && i == n - 1;
-    const int low = 2 * i, high = 2 * i + 1, next = 2 * ((i + 1) % n);
-    const int next_low = swapped ? next + 1 : next, next_high = swapped ? next : next + 1;
+    const int low = 2 * i, high = low + 1, next_low = 2 * ((i + 1) % n), next_high = next_low + 1;
     faces.col(2 * i) << low, next_low, next_high;
     faces.col(2 * i + 1) << low, next_high, high;
   }
+  return faces;
+}
+
+/// The same band with its last square turned over.
+inline Faces moebius_strip(int n) {
+  Faces faces = cylinder(n);
+  faces.col(2 * n - 2) << 2 * n - 2, 1, 0;
+  faces.col(2 * n - 1) << 2 * n - 2, 0, 2 * n - 1;
   return faces;
 }
 

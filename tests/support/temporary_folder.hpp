@@ -1,10 +1,12 @@
 #pragma once
 /// A folder of its own for a test that writes files; gone with the object.
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
 #include <string>
+#include <system_error>
 
 namespace dsns::test {
 

@@ -17,7 +17,8 @@ struct Fixture {
   explicit Fixture(int frames = 7) {
     sphere.vertices.colwise().normalize();
     const auto body = [](const Vec3d& s, double t) {
-      return Vec3d(2 * s.x() + std::sin(3 * t) * s.z() * s.z(), s.y() * (1 + t), 3 * s.z() + 0.2 * std::cos(4 * t) + 10);
+      return Vec3d(2 * s.x() + std::sin(3 * t) * s.z() * s.z(), s.y() * (1 + t),
+                   3 * s.z() + 0.2 * std::cos(4 * t) + 10);
     };
     sequence = sequence_of(body, sphere, frames);
   }
@@ -40,7 +41,8 @@ TEST_CASE("a sampled surface passes through its frames at its vertices", "[sampl
     const double t = double(k) / (frames - 1);
     CHECK((surface.positions(body.sphere.vertices, t) - body.sequence.frames[std::size_t(k)]).cwiseAbs().maxCoeff() <
           1e-12);
-    CHECK((surface(Vec3d(body.sphere.vertices.col(17)), t) - body.sequence.frames[std::size_t(k)].col(17)).norm() < 1e-12);
+    CHECK((surface(Vec3d(body.sphere.vertices.col(17)), t) - body.sequence.frames[std::size_t(k)].col(17)).norm() <
+          1e-12);
   }
 }
 

@@ -4,7 +4,7 @@
 ///
 /// Where a function has no derivative: abs(0), hypot(0, 0) and atan2(0, 0) have derivative 0; sqrt(0) and cbrt(0) have an
 /// infinite one (use hypot for lengths); min and max take their first argument in a tie, as in the standard library.
-/// pow(0, 0) = 1 with derivative 0 in both arguments; pow(x < 0, y) has derivative NaN in an active y.
+/// pow(0, 0) = 1 with derivative 0 in both arguments; pow(x < 0, y) has derivative NaN in a y that is not constant.
 /// accuracy a few ulp of closed forms, second derivatives and nested scalars included [autodiff/functions_test]
 #include <dsns/autodiff/scalar.hpp>
 

@@ -10,7 +10,7 @@
 namespace dsns {
 
 /// Not-a-knot cubic spline with `knots` equidistant knots on [0, 1]: twice continuously differentiable, fourth order,
-/// exact for cubics. Three knots give the parabola, two the line, one the constant. Outside [0, 1] the end pieces go on.
+/// exact for cubics. Three knots give the parabola, two the line, one the constant. Beyond 0 and 1 the end pieces go on.
 /// accuracy 1e-13 on cubics [core/spline_test]
 /// source   de Boor, A Practical Guide to Splines, chapter IV; second derivatives at the knots as unknowns
 class UniformSpline {
@@ -25,7 +25,8 @@ class UniformSpline {
 
   Index knots() const { return knots_; }
 
-  /// The weights of the knots at t: `knots` values that sum to 1. Throws InvalidArgument unless t is finite; likewise below.
+  /// The weights of the knots at t: `knots` values that sum to 1. Here and below:
+  /// throws   InvalidArgument unless t is finite
   Eigen::VectorXd weights(double t) const {
     const auto [left, x] = piece(t);
     const double y = 1 - x;

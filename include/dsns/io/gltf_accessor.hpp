@@ -144,29 +144,6 @@ inline Bytes view_bytes(const GltfFile& file, int index, std::size_t offset) {
   return Bytes(buffer.data).subspan(view.byteOffset + offset, view.byteLength - offset);
 }
 
-template <class T>
-double number(const unsigned char* bytes, bool normalized) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);
-  if constexpr (std::numeric_limits<T>::is_integer)
-    if (normalized) return std::max(double(value) / double(std::numeric_limits<T>::max()), -1.0);
-  return double(value);
-}
-
-/// One component. source: glTF 2.0, sections 3.6.2.2 and 3.11 (normalised integers)
-inline double component(const unsigned char* bytes, int type, bool normalized) {
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return number<std::int8_t>(bytes, normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return number<std::uint8_t>(bytes, normalized);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return number<std::int16_t>(bytes, normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return number<std::uint16_t>(bytes, normalized);
-    case TINYGLTF_COMPONENT_TYPE_INT: return number<std::int32_t>(bytes, normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return number<std::uint32_t>(bytes, normalized);
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return number<float>(bytes, normalized);
-    default: return number<double>(bytes, normalized);
-  }
-}
-
 /// What an accessor's elements look like in memory.
 struct Layout {
   Index components;
@@ -175,6 +152,29 @@ struct Layout {
   std::size_t component_size() const { return std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(type))); }
   std::size_t element_size() const { return component_size() * std::size_t(components); }
 };
+
+template <class T>
+double number(const unsigned char* bytes, const Layout& layout) {
+  T value;
+  std::memcpy(&value, bytes, sizeof value);
+  if constexpr (std::numeric_limits<T>::is_integer)
+    if (layout.normalized) return std::max(double(value) / double(std::numeric_limits<T>::max()), -1.0);
+  return double(value);
+}
+
+/// One component. source: glTF 2.0, sections 3.6.2.2 and 3.11 (normalised integers)
+inline double component(const unsigned char* bytes, const Layout& layout) {
+  switch (layout.type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return number<std::int8_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return number<std::uint8_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return number<std::int16_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return number<std::uint16_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_INT: return number<std::int32_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return number<std::uint32_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: return number<float>(bytes, layout);
+    default: return number<double>(bytes, layout);
+  }
+}
 
 /// `count` elements, `stride` bytes apart (0: without gaps), as the columns of components x count.
 inline Eigen::MatrixXd decode(const GltfFile& file, Bytes bytes, const Layout& layout, std::size_t count,
@@ -187,7 +187,7 @@ inline Eigen::MatrixXd decode(const GltfFile& file, Bytes bytes, const Layout& l
   for (Index i = 0; i < values.cols(); ++i)
     for (Index k = 0; k < layout.components; ++k)
       values(k, i) = component(bytes.data() + std::size_t(i) * stride + std::size_t(k) * layout.component_size(),
-                               layout.type, layout.normalized);
+                               layout);
   return values;
 }
 

@@ -48,9 +48,9 @@ class GltfBuilder {
     model.defaultScene = 0;
   }
 
-  /// The accessor of a matrix whose columns are elements; `target` is the kind of buffer or 0.
+  /// The accessor of a matrix in the order of its columns; `type` is the kind of element, `target` of buffer or 0.
   template <class Matrix>
-  int append(const Matrix& values, int type, int target, bool with_bounds = false) {
+  int append(const Matrix& values, int type, int target) {
     using Scalar = typename Matrix::Scalar;
     tinygltf::BufferView view;
     view.buffer = 0;
@@ -65,19 +65,20 @@ class GltfBuilder {
     accessor.componentType =
         std::is_same_v<Scalar, float> ? TINYGLTF_COMPONENT_TYPE_FLOAT : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
     accessor.type = type;
-    accessor.count = static_cast<std::size_t>(values.size() / tinygltf::GetNumComponentsInType(std::uint32_t(type)));
-    if (with_bounds)
-      for (Index k = 0; k < values.rows(); ++k) {
-        accessor.minValues.push_back(double(values.row(k).minCoeff()));
-        accessor.maxValues.push_back(double(values.row(k).maxCoeff()));
-      }
+    const auto components = tinygltf::GetNumComponentsInType(std::uint32_t(type));
+    const auto elements = values.reshaped(components, values.size() / components);
+    accessor.count = static_cast<std::size_t>(elements.cols());
+    for (Index k = 0; k < components; ++k) {
+      accessor.minValues.push_back(double(elements.row(k).minCoeff()));
+      accessor.maxValues.push_back(double(elements.row(k).maxCoeff()));
+    }
     model.bufferViews.push_back(std::move(view));
     model.accessors.push_back(std::move(accessor));
     return static_cast<int>(model.accessors.size()) - 1;
   }
 
-  int append_vectors(const Mat3Xf& values, bool with_bounds) {
-    return append(values, TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER, with_bounds);
+  int append_vectors(const Mat3Xf& values) {
+    return append(values, TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER);
   }
 
   std::string glb() {
@@ -124,18 +125,18 @@ inline tinygltf::Mesh morphing_mesh(GltfBuilder& builder, const MeshSequence& bo
   auto& primitive = mesh.primitives.emplace_back();
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
   primitive.material = static_cast<int>(builder.model.materials.size());
-  primitive.attributes["POSITION"] = builder.append_vectors(points, true);
-  primitive.attributes["NORMAL"] = builder.append_vectors(normals, false);
+  primitive.attributes["POSITION"] = builder.append_vectors(points);
+  primitive.attributes["NORMAL"] = builder.append_vectors(normals);
   if (vertex_colors.cols() > 0)
     primitive.attributes["COLOR_0"] =
-        builder.append_vectors(vertex_colors.cwiseMax(0).cwiseMin(1).cast<float>(), false);
+        builder.append_vectors(vertex_colors.cwiseMax(0).cwiseMin(1).cast<float>());
   primitive.indices = builder.append(Eigen::Matrix<std::uint32_t, 3, Eigen::Dynamic>(body.faces.cast<std::uint32_t>()),
                                      TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
   for (std::size_t k = 1; k < body.frames.size(); ++k) {
     const Mat3X moved = body.frames[k] - points.cast<double>();
     primitive.targets.push_back(
-        {{"POSITION", builder.append_vectors(moved.cast<float>(), true)},
-         {"NORMAL", builder.append_vectors(unit_normals(body.frames[k], body.faces) - normals, false)}});
+        {{"POSITION", builder.append_vectors(moved.cast<float>())},
+         {"NORMAL", builder.append_vectors(unit_normals(body.frames[k], body.faces) - normals)}});
   }
   mesh.weights.assign(primitive.targets.size(), 0.0);
   return mesh;
@@ -147,7 +148,7 @@ inline void append_motion(GltfBuilder& builder, tinygltf::Animation& animation, 
   Eigen::MatrixXf weights = Eigen::MatrixXf::Zero(frames - 1, frames);
   weights.diagonal(1).setOnes();
   tinygltf::AnimationSampler sampler;
-  sampler.input = builder.append(times, TINYGLTF_TYPE_SCALAR, 0, true);
+  sampler.input = builder.append(times, TINYGLTF_TYPE_SCALAR, 0);
   sampler.output = builder.append(weights, TINYGLTF_TYPE_SCALAR, 0);
   tinygltf::AnimationChannel channel;
   channel.sampler = static_cast<int>(animation.samplers.size());

@@ -4,6 +4,7 @@
 #include <dsns/core/types.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -63,7 +64,7 @@ inline bool same_edge(const FaceSide& a, const FaceSide& b) { return a.low == b.
 /// All 3m sides, sorted so that the sides of one edge are neighbours.
 inline std::vector<FaceSide> sorted_sides(const Faces& faces) {
   std::vector<FaceSide> sides;
-  sides.reserve(static_cast<std::size_t>(3 * faces.cols()));
+  sides.reserve(static_cast<std::size_t>(faces.size()));
   for (Index f = 0; f < faces.cols(); ++f)
     for (int k = 0; k < 3; ++k) {
       const int a = faces(k, f), b = faces((k + 1) % 3, f);
@@ -85,10 +86,10 @@ void for_each_edge(const std::vector<FaceSide>& sides, const Visit& visit) {
   }
 }
 
-/// Corner 3 f + k of the vertex at either end of a side, as seen from the side's own face.
-inline Index corner_at(const FaceSide& side, bool at_low) {
-  const int k = side.forward == at_low ? side.corner : (side.corner + 1) % 3;
-  return 3 * side.face + k;
+/// Corner 3 f + k of the side's own face at one of the side's two vertices.
+inline Index corner_at(const FaceSide& side, int vertex) {
+  const int from = side.forward ? side.low : side.high;
+  return 3 * side.face + (from == vertex ? side.corner : (side.corner + 1) % 3);
 }
 
 /// Corners joined around their vertex wherever their faces share an edge: a set is one fan of faces.
@@ -96,7 +97,7 @@ inline DisjointSets vertex_fans(const std::vector<FaceSide>& sides, Index face_c
   DisjointSets fans(3 * face_count);
   for_each_edge(sides, [&](auto first, auto last) {
     for (auto side = first + 1; side != last; ++side)
-      for (const bool at_low : {true, false}) fans.unite(corner_at(*first, at_low), corner_at(*side, at_low));
+      for (const int end : {first->low, first->high}) fans.unite(corner_at(*first, end), corner_at(*side, end));
   });
   return fans;
 }
@@ -115,8 +116,8 @@ inline int count_boundary_loops(const std::vector<FaceSide>& sides, DisjointSets
   std::vector<Index> ends;
   for_each_edge(sides, [&](auto first, auto last) {
     if (last - first != 1) return;
-    ends.push_back(fans.find(corner_at(*first, true)));
-    ends.push_back(fans.find(corner_at(*first, false)));
+    ends.push_back(fans.find(corner_at(*first, first->low)));
+    ends.push_back(fans.find(corner_at(*first, first->high)));
     loops.unite(ends[ends.size() - 2], ends.back());
   });
   for (Index& end : ends) end = loops.find(end);

@@ -4,6 +4,7 @@
 #include <dsns/core/types.hpp>
 #include <dsns/mesh/diagnosis.hpp>
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <string_view>
@@ -67,17 +68,19 @@ struct SplitFaces {
 };
 inline SplitFaces one_vertex_per_fan(const Faces& faces) {
   auto fans = vertex_fans(sorted_sides(faces), faces.cols());
-  std::map<std::pair<int, Index>, int> label;  // by (old vertex, fan): new vertices keep the old order
-  for (Index c = 0; c < 3 * faces.cols(); ++c) label[{faces(c % 3, c / 3), fans.find(c)}] = 0;
+  std::vector<std::pair<int, Index>> found;  // (old vertex, corner that represents its fan)
+  for (Index c = 0; c < faces.size(); ++c)
+    if (fans.find(c) == c) found.emplace_back(faces(c), c);
+  std::sort(found.begin(), found.end());  // new vertices keep the old order
   SplitFaces result;
-  for (auto& [fan, index] : label) {
-    if (!result.source.empty() && result.source.back() == fan.first) ++result.splits;
-    index = static_cast<int>(result.source.size());
-    result.source.push_back(fan.first);
+  std::vector<int> new_vertex(static_cast<std::size_t>(faces.size()), -1);
+  for (const auto& [vertex, fan] : found) {
+    if (!result.source.empty() && result.source.back() == vertex) ++result.splits;
+    new_vertex[static_cast<std::size_t>(fan)] = static_cast<int>(result.source.size());
+    result.source.push_back(vertex);
   }
   result.faces.resize(3, faces.cols());
-  for (Index c = 0; c < 3 * faces.cols(); ++c)
-    result.faces(c % 3, c / 3) = label.at({faces(c % 3, c / 3), fans.find(c)});
+  for (Index c = 0; c < faces.size(); ++c) result.faces(c) = new_vertex[static_cast<std::size_t>(fans.find(c))];
   return result;
 }
 

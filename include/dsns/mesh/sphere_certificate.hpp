@@ -69,8 +69,9 @@ inline double spherical_area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 
 /// Certifies a sphere map.
 /// sphere   3 x n unit vectors, the images of the vertices
-/// shares   of the surface, one non-negative value a face, any common factor; faces without share are left out of the ratio
-/// throws   UnusableMesh unless the faces triangulate a sphere; InvalidArgument where sizes differ or a vector is no unit
+/// shares   of the surface, one non-negative value a face, any common factor; a face without share has no ratio
+/// throws   UnusableMesh unless the faces triangulate a sphere
+///          InvalidArgument where sizes differ or a vector is not of unit length
 inline SphereMapCertificate certify(const Mat3X& sphere, const Faces& faces, const Eigen::VectorXd& shares) {
   require(shares.size() == faces.cols(), "certify: ", shares.size(), " shares for ", faces.cols(), " faces");
   require_sphere_topology(faces, sphere.cols());

@@ -9,8 +9,11 @@ class SphereEmbedding {
  public:
   /// regularization   of the cotangents, relative to the mean squared edge
   SphereEmbedding(CollapsibleMesh& mesh, const ConcatenatedFrames& frames, double regularization)
-      : mesh_(mesh), frames_(frames), regularization_(regularization),
-        points_(Mat3X::Zero(3, mesh.vertex_slots())), cotangents_(3, mesh.face_slots()) {
+      : mesh_(mesh),
+        frames_(frames),
+        regularization_(regularization),
+        points_(Mat3X::Zero(3, mesh.vertex_slots())),
+        cotangents_(3, mesh.face_slots()) {
     place_tetrahedron();
     regularize(regularization);
     for (int sweep = 0; sweep < 20; ++sweep) relax_all(false);

@@ -1,11 +1,11 @@
 #pragma once
 /// The energy of a triangle on the sphere: how far it is from the shape and from the size of its surface triangle.
-#include <dsns/mesh/collapse_hierarchy.hpp>
+#include <dsns/mesh/collapsible_mesh.hpp>
 #include <dsns/mesh/sphere_certificate.hpp>
 
 namespace dsns::detail {
 
-/// Cotangents of a triangle whose squared edges are all lengthened by eps times their mean: bounded where it is a needle.
+/// Cotangents of a triangle whose squared edges are all lengthened by eps times their mean: bounded for needles.
 inline Vec3d regularized_cotangents(SquaredLengths l, double eps) {
   const double lift = eps * (l[0] + l[1] + l[2]) / 3;
   for (double& edge : l) edge += lift;

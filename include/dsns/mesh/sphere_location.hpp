@@ -15,7 +15,7 @@ struct SphereHit {
   Vec3d barycentric = Vec3d::Zero();
 };
 
-/// Point location in a tree of bounding caps: O(log n) triangles a query where they are of similar size. Every unit vector
+/// Point location in a tree of bounding caps: O(log n) triangles a query where they are well shaped. Every unit vector
 /// has a face; on edges and vertices one of the faces there. Queries are const and safe from several threads.
 class SphereLocation {
  public:

@@ -4,9 +4,9 @@
 
 namespace dsns {
 
-/// Passes exactly the triangulations of a sphere: closed, oriented alike, manifold, of one piece, genus 0, every vertex used.
-/// throws   UnusableMesh with one sentence on what is wrong [mesh/spherical_parameterization_test]; InvalidArgument where a
-///          face names a vertex that does not exist
+/// Passes exactly the triangulations of a sphere: closed, oriented alike, manifold, one piece, genus 0, all vertices used.
+/// throws   UnusableMesh with one sentence on what is wrong [mesh/spherical_parameterization_test]
+///          InvalidArgument where a face names a vertex that does not exist
 inline void require_sphere_topology(const Faces& faces, Index vertex_count) {
   const MeshDiagnosis found = diagnose(faces, vertex_count);
   const auto check = [](bool ok, const auto&... what) {

@@ -8,19 +8,20 @@
 /// Half-edge collapses down to a tetrahedron, vertices put back in reverse, Newton steps on a shape and area energy at
 /// every doubling (the headers included here say how). Area counts: a limb starved of it cannot be sampled or fitted.
 #include <dsns/core/progress.hpp>
+#include <dsns/mesh/collapse_hierarchy.hpp>
 #include <dsns/mesh/sphere_embedding.hpp>
 
 namespace dsns {
 
 struct ParameterizationOptions {
-  int frames = 8;                     ///< at most so many equidistant frames shape the map
-  double mass_floor = 0.01;           ///< share of the sphere spread evenly over the faces, so that none vanishes
-  double cap_share = 0.1;             ///< at most this share of the surface's area for the faces that close its holes
-  double coarse_regularization = 1;   ///< of the cotangents while vertices return
-  double final_regularization = 0.01; ///< and at the end
-  int level_sweeps = 10;              ///< at every doubling of the vertex count, at most
-  int final_sweeps = 20;              ///< at most
-  double tolerance = 1e-4;            ///< sweeps stop where (energy before - after) < tolerance * energy before
+  int frames = 8;                      ///< at most so many equidistant frames shape the map
+  double mass_floor = 0.01;            ///< share of the sphere spread evenly over the faces, so that none vanishes
+  double cap_share = 0.1;              ///< at most this share of the surface's area for the faces that close its holes
+  double coarse_regularization = 1;    ///< of the cotangents while vertices return
+  double final_regularization = 0.01;  ///< and at the end
+  int level_sweeps = 40;               ///< at every doubling of the vertex count, at most
+  int final_sweeps = 20;               ///< at most
+  double tolerance = 1e-4;             ///< sweeps stop where (energy before - after) < tolerance * energy before
 };
 
 /// The result's energy is that of mesh/sphere_energy.hpp: 2 for a similar map that keeps areas.
@@ -85,8 +86,8 @@ inline void require_usable(const MeshSequence& sequence, const ParameterizationO
 /// Maps a closed genus-0 mesh to the sphere.
 /// sequence  any number of frames; the concatenated positions of some of them give lengths and areas
 /// returns   a bijective map: faces keep their orientation, so counter-clockwise from outside stays so. The same input
-///           gives the same bits on one machine. About a second for 10 000 vertices.
-/// accuracy  no triangle turned over, exactly [mesh/spherical_parameterization_test: 100:1 ellipsoid, limbs, real bodies]
+///           gives the same bits on one machine. One to two seconds for 10 000 vertices.
+/// accuracy  no triangle turned over, exactly [mesh/spherical_parameterization_test: 100:1 ellipsoid, limbs, animals]
 /// throws    UnusableMesh where the mesh is not one closed genus-0 surface, or no certified map was found
 inline ParameterizationResult spherical_parameterization(const MeshSequence& sequence,
                                                          const ParameterizationOptions& options = {},

@@ -10,7 +10,7 @@
 
 namespace dsns {
 
-/// F(s, t) = sum_k b_k(s) x_k(t) with b the barycentrics of s in its triangle (central projection) and x_k(t) the spline
+/// F(s, t) = sum_k b_k(s) x_k(t) with b the barycentrics of s in its triangle (central projection), x_k(t) the spline
 /// through the frames. Continuous in s and smooth inside a triangle; twice continuously differentiable in t.
 /// Many queries at the same points: locate() them once and pass the hits.
 ///
@@ -27,7 +27,8 @@ class SampledSurface {
   /// sphere   3 x n, the images of the vertices on the unit sphere
   /// throws   InvalidArgument where sizes differ, UnusableMesh where the sphere map is not one to one
   SampledSurface(const MeshSequence& sequence, const Mat3X& sphere)
-      : location_(sphere, sequence.faces), spline_(sequence.frame_count()),
+      : location_(sphere, sequence.faces),
+        spline_(sequence.frame_count()),
         frames_(3 * sphere.cols(), sequence.frame_count()) {
     for (Index k = 0; k < frames_.cols(); ++k) {
       const Mat3X& frame = sequence.frames[static_cast<std::size_t>(k)];

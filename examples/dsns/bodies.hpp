@@ -1,0 +1,74 @@
+#pragma once
+/// From a name on the command line to a moving surface that the library can compare with others.
+#include "report.hpp"
+
+#include <dsns/elastic/normalization.hpp>
+#include <dsns/core/progress.hpp>
+#include <dsns/elastic/spatial_options.hpp>
+#include <dsns/elastic/time_warp.hpp>
+#include <dsns/mesh/repair.hpp>
+#include <dsns/mesh/sphere_certificate.hpp>
+#include <dsns/surface/any_surface.hpp>
+
+#include <string>
+#include <vector>
+
+namespace dsns::program {
+
+enum class Representation { sampled, neural };
+
+/// What all subcommands share.
+struct Settings {
+  int frames = 32;
+  std::uint64_t seed = 0;
+  int threads = 1;
+  std::string json;
+  Representation representation = Representation::sampled;
+  RotationSearch search = RotationSearch::upright;
+  int steps = 0;       ///< of the fit; 0: the library's default
+  double seconds = 0;  ///< of the fit; 0: no limit
+};
+
+/// A file's animation before anything is done to it.
+struct Source {
+  MeshSequence sequence;
+  std::string clip;
+  std::vector<std::string> notes;
+};
+
+Source read_source(const std::string& name, int frames);
+
+/// A repaired, centred, mapped animation with its surface.
+struct Body {
+  NormalizedSequence normalized;
+  TriangleMesh sphere;  ///< its own triangles with their vertices on the unit sphere
+  SphereMapCertificate certificate;
+  AnyAnimatedSurface surface;
+};
+
+/// How a network does on points of the faces that it never saw. Lengths in units of the smallest ball around the origin
+/// that holds all centred frames.
+struct FitFigures {
+  double msd = 0, rms_distance = 0, max_distance = 0, normal_angle_mean_deg = 0;
+  Index parameters = 0;
+  int steps = 0;
+  double cpu_seconds = 0;
+};
+
+/// Reads, repairs and maps; the surface is the sampled mesh. Says in the report what was done.
+Body load_body(const std::string& name, const Settings& settings, Report& report, const Progress& progress);
+
+/// The body with a network for a surface instead of its samples.
+FitFigures fit_body(Body& body, const Settings& settings, const Progress& progress);
+
+/// Frames of a surface at the vertices of a sphere mesh, at equidistant times along a warp.
+std::vector<Mat3X> frames_of(const AnyAnimatedSurface& surface, const Mat3X& sphere, int frames);
+
+/// Puts size and root motion back: frames in normalised units become a sequence in those of `like`.
+MeshSequence denormalize(const std::vector<Mat3X>& frames, const Faces& faces, const Mat3X& trajectory, double scale,
+                         double duration, const std::string& name);
+
+/// The trajectory at equidistant times along a warp, relative to its start, in units of the scale.
+Mat3X relative_trajectory(const NormalizedSequence& body, const TimeWarp& warp, int frames);
+
+}  // namespace dsns::program

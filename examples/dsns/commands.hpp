@@ -1,0 +1,23 @@
+#pragma once
+/// The subcommands. Each prints its figures in a report; errors come as exceptions of the library.
+#include "bodies.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace dsns::program {
+
+void inspect(const std::string& source, const Settings& settings, Report& report);
+/// Fits a network to the body, which then is the network. `out` may be empty: nothing is written; likewise below.
+void fit(Body& body, const std::filesystem::path& out, const Settings& settings, Report& report);
+void register_two(const Body& first, const Body& second, const std::filesystem::path& out, const Settings& settings,
+                  Report& report);
+void geodesic(const Body& first, const Body& second, const std::filesystem::path& out, int steps, const Settings& settings,
+              Report& report);
+void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, const std::filesystem::path& overview,
+          const Settings& settings, Report& report);
+/// The whole chain into a folder. With no sources, makes three bodies first.
+void demo(std::vector<std::string> sources, const std::filesystem::path& folder, const Settings& settings, Report& report);
+
+}  // namespace dsns::program

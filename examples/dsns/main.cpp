@@ -1,0 +1,147 @@
+// dsns: elastic analysis of moving surfaces from the command line.
+#include "commands.hpp"
+
+#include <dsns/version.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <map>
+#include <thread>
+
+using namespace dsns::program;
+
+namespace {
+
+constexpr int usage_error = 2;
+
+/// The options that several subcommands share, on each of them.
+void add_common(CLI::App* command, Settings& settings) {
+  command->add_option("--frames", settings.frames, "equidistant frames read from a clip")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 1000));
+  command->add_option("--threads", settings.threads, "threads to use")->capture_default_str()->check(CLI::Range(1, 256));
+  command->add_option("--seed", settings.seed, "of everything random")->capture_default_str();
+  command->add_option("--json", settings.json, "write every figure to this file");
+}
+
+void add_fit(CLI::App* command, Settings& settings) {
+  command->add_option("--steps", settings.steps, "training steps of a network (0: 6000)")->check(CLI::Range(0, 10000000));
+  command->add_option("--seconds", settings.seconds, "stop training after so many seconds (0: never)")
+      ->check(CLI::Range(0.0, 1e6));
+}
+
+void add_registration(CLI::App* command, Settings& settings) {
+  const std::map<std::string, Representation> kinds{{"sampled", Representation::sampled}, {"neural", Representation::neural}};
+  command->add_option("--surface", settings.representation, "sampled: the mesh itself; neural: a network fitted to it")
+      ->transform(CLI::CheckedTransformer(kinds));
+  const std::map<std::string, dsns::RotationSearch> searches{{"upright", dsns::RotationSearch::upright},
+                                                             {"full", dsns::RotationSearch::full}};
+  command
+      ->add_option("--search", settings.search,
+                   "upright: the bodies stand alike (same up, same heading); full: they lie at will")
+      ->transform(CLI::CheckedTransformer(searches));
+  add_fit(command, settings);
+}
+
+/// Reads the sources and, if the settings ask for networks, fits them.
+std::vector<Body> load(const std::vector<std::string>& sources, const Settings& settings, Report& report) {
+  std::vector<Body> bodies;
+  for (const auto& source : sources) {
+    ProgressLine line;
+    bodies.push_back(load_body(source, settings, report, std::ref(line)));
+    if (settings.representation == Representation::sampled) continue;
+    report.section("fit." + std::to_string(bodies.size()));
+    fit(bodies.back(), {}, settings, report);
+    report.section("");
+  }
+  return bodies;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  settings.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  Report report;
+  std::vector<std::string> sources;
+  std::string out, overview;
+  int steps = 5;
+
+  CLI::App app{"Elastic analysis of moving surfaces: registered sequences, geodesics and means of animations."};
+  app.set_version_flag("--version", dsns::version);
+  app.require_subcommand(1);
+  app.footer("FILE is a GLB or glTF animation, FILE#Clip one of its clips (full name, or the part after the last '|'),\n"
+             "or a folder of OBJ frames. Try: dsns demo -o demo");
+  const auto command = [&](const std::string& name, const std::string& what, auto run) {
+    CLI::App* sub = app.add_subcommand(name, what);
+    sub->callback([&, run] {
+      run();
+      report.save(settings.json);
+    });
+    add_common(sub, settings);
+    return sub;
+  };
+
+  CLI::App* inspect_command = command("inspect", "what an animation holds and whether it can be used",
+                                      [&] { inspect(sources[0], settings, report); });
+  inspect_command->add_option("FILE", sources, "the animation")->required()->expected(1);
+
+  CLI::App* fit_command = command("fit", "fit a neural surface to an animation", [&] {
+    settings.representation = Representation::sampled;
+    std::vector<Body> bodies = load(sources, settings, report);
+    fit(bodies[0], out, settings, report);
+  });
+  fit_command->add_option("FILE", sources, "the animation")->required()->expected(1);
+  fit_command->add_option("-o,--output", out, "write the fitted animation to this GLB");
+  add_fit(fit_command, settings);
+
+  CLI::App* register_command = command("register", "bring the second animation into correspondence with the first", [&] {
+    const std::vector<Body> bodies = load(sources, settings, report);
+    register_two(bodies[0], bodies[1], out, settings, report);
+  });
+  register_command->add_option("FILES", sources, "two animations")->required()->expected(2);
+  register_command->add_option("-o,--output", out, "write both and the registered second to this GLB");
+  add_registration(register_command, settings);
+
+  CLI::App* geodesic_command = command("geodesic", "the shortest way from one animation to another", [&] {
+    const std::vector<Body> bodies = load(sources, settings, report);
+    geodesic(bodies[0], bodies[1], out, steps, settings, report);
+  });
+  geodesic_command->add_option("FILES", sources, "two animations")->required()->expected(2);
+  geodesic_command->add_option("-o,--output", out, "write the way to this GLB, side by side");
+  geodesic_command->add_option("--points", steps, "animations along the way, ends included")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 50));
+  add_registration(geodesic_command, settings);
+
+  CLI::App* mean_command = command("mean", "the mean of animations", [&] {
+    mean(load(sources, settings, report), out, overview, settings, report);
+  });
+  mean_command->add_option("FILES", sources, "two animations or more; the first gives the triangles")
+      ->required()
+      ->expected(2, 1000);
+  mean_command->add_option("-o,--output", out, "write the mean to this GLB");
+  mean_command->add_option("--overview", overview, "write all, registered, with the mean last, to this GLB");
+  add_registration(mean_command, settings);
+
+  CLI::App* demo_command = command("demo", "the whole chain; without files, on three bodies that it makes", [&] {
+    demo(sources, out.empty() ? "demo" : out, settings, report);
+  });
+  demo_command->add_option("FILES", sources, "animations, or nothing")->expected(0, 1000);
+  demo_command->add_option("-o,--output", out, "folder to write to (default: demo)");
+  add_registration(demo_command, settings);
+  demo_command->preparse_callback([&](std::size_t) { settings.representation = Representation::neural; });
+  demo_command->get_option("--surface")->description("neural (default here): a network fitted to each; sampled: the mesh itself");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : usage_error;
+  } catch (const std::exception& error) {
+    std::cout << std::flush;
+    std::cerr << "dsns: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

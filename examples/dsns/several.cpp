@@ -1,0 +1,177 @@
+// register, geodesic, mean: what is said of several animations.
+#include "commands.hpp"
+#include "scene.hpp"
+
+#include <dsns/stats/moving_mean.hpp>
+
+#include <numeric>
+
+namespace dsns::program {
+
+namespace {
+
+RegistrationOptions registration_options(const Settings& settings) {
+  RegistrationOptions options;
+  options.spatial.search = settings.search;
+  options.spatial.threads = settings.threads;
+  options.snapshots = settings.frames;
+  return options;
+}
+
+void report_registration(const MovingRegistration& r, Report& report) {
+  const SpatialSummary& s = r.spatial.summary;
+  const TemporalSummary& t = r.temporal.summary;
+  report.figure("spatial.energy_before", "spatial energy before", s.energy_before);
+  report.figure("spatial.energy_after", "spatial energy after", s.energy_after);
+  report.figure("spatial.norm", "squared norm of the first's field", s.norm);
+  report.figure("spatial.min_jacobian", "smallest Jacobian of the sphere map", s.min_jacobian);
+  report.figure("spatial.rotation_deg", "rotation of the body, degrees", rotation_angle(r.spatial.rotation) * 180 / pi);
+  report.figure("spatial.steps", "spatial steps", s.steps);
+  report.figure("spatial.stop", "stopped because", s.stop);
+  report.figure("temporal.energy_before", "temporal energy before", t.energy_before);
+  report.figure("temporal.energy_after", "temporal energy after", t.energy_after);
+  report.figure("temporal.min_slope", "smallest slope of the time warp", t.min_slope);
+  report.figure("temporal.stop", "stopped because", t.stop);
+}
+
+void say_units(Report& report) {
+  report.say("  Root motion is removed first, and the mean area of every body is 1: energies are in these units.");
+}
+
+/// A body as it is, on its own triangles, with its own motion.
+MeshSequence as_represented(const Body& body, int frames) {
+  const auto& n = body.normalized;
+  return denormalize(frames_of(body.surface, body.sphere.vertices, frames), n.sequence.faces,
+                     relative_trajectory(n, {}, frames), n.scale, n.sequence.duration, n.sequence.name);
+}
+
+/// The body on another's sphere mesh and clock.
+MeshSequence registered(const Body& body, const MovingRegistration& r, const TriangleMesh& sphere, int frames) {
+  const RegisteredSurface view(body.surface, r.spatial.rotation, r.spatial.gamma, r.temporal.warp);
+  std::vector<Mat3X> out;
+  for (int k = 0; k < frames; ++k) out.push_back(view.positions(sphere.vertices, double(k) / (frames - 1)));
+  return denormalize(out, sphere.faces, r.spatial.rotation * relative_trajectory(body.normalized, r.temporal.warp, frames),
+                     body.normalized.scale, body.normalized.sequence.duration, body.normalized.sequence.name);
+}
+
+double mix(double a, double b, double tau) { return (1 - tau) * a + tau * b; }
+
+}  // namespace
+
+void register_two(const Body& a, const Body& b, const std::filesystem::path& out, const Settings& settings,
+                  Report& report) {
+  ProgressLine line;
+  const MovingRegistration r =
+      register_moving(a.surface, b.surface, a.sphere, registration_options(settings), std::ref(line));
+  report_registration(r, report);
+  say_units(report);
+  if (out.empty()) return;
+  Scene scene;
+  const Mat3X colors = place_colors(a, a.sphere.vertices);
+  scene.add(as_represented(a, settings.frames), colors);
+  scene.add(as_represented(b, settings.frames), place_colors(a, r.spatial.gamma.inverse(b.sphere.vertices)));
+  scene.add(registered(b, r, a.sphere, settings.frames), colors);
+  scene.write(out);
+  report.say("  Side by side: the first, the second, the second on the first's triangles and clock. Colours correspond.");
+  report.wrote("registered", out);
+}
+
+void geodesic(const Body& a, const Body& b, const std::filesystem::path& out, int steps, const Settings& settings,
+              Report& report) {
+  ProgressLine line;
+  const RegistrationOptions options = registration_options(settings);
+  const MovingRegistration r = register_moving(a.surface, b.surface, a.sphere, options, std::ref(line));
+  const std::vector<SurfaceSamples> samples{sample(a.surface, {}, a.sphere.vertices, options),
+                                            sample(b.surface, r.spatial, a.sphere.vertices, options)};
+  const FunctionalPca pca = joint_pca(samples, a.sphere.faces, options.pca);
+  const CurveGeodesic path(shape_curve(samples[0], pca), shape_curve(samples[1], pca), r.temporal.warp);
+  report_registration(r, report);
+  report.figure("components", "principal components", pca.modes());
+  report.figure("components_residual", "mean squared error they leave", pca.residual());
+  report.figure("distance", "distance", path.distance());
+  say_units(report);
+  if (out.empty()) return;
+
+  const int frames = settings.frames;
+  const RegisteredSurface view(b.surface, r.spatial.rotation, r.spatial.gamma, r.temporal.warp);
+  const Mat3X colors = place_colors(a, a.sphere.vertices);
+  const Mat3X way_a = relative_trajectory(a.normalized, {}, frames);
+  const Mat3X way_b = r.spatial.rotation * relative_trajectory(b.normalized, r.temporal.warp, frames);
+  const Eigen::MatrixXd curve_a = path.points(0), curve_b = path.points(1);
+  Scene scene;
+  for (int j = 0; j < steps; ++j) {
+    const double tau = steps > 1 ? double(j) / (steps - 1) : 0.5;
+    const Eigen::MatrixXd curve = path.points(tau);
+    std::vector<Mat3X> body;
+    for (int k = 0; k < frames; ++k) {
+      const double t = double(k) / (frames - 1);
+      // What the components leave of either end goes in by its share, so that the ends are the bodies themselves.
+      const Mat3X rest_a = positions(a.surface, a.sphere.vertices, t) - pca.reconstruct(interpolate(curve_a, t));
+      const Mat3X rest_b = view.positions(a.sphere.vertices, t) - pca.reconstruct(interpolate(curve_b, t));
+      body.push_back(pca.reconstruct(interpolate(curve, t)) + (1 - tau) * rest_a + tau * rest_b);
+    }
+    scene.add(denormalize(body, a.sphere.faces, (1 - tau) * way_a + tau * way_b,
+                          mix(a.normalized.scale, b.normalized.scale, tau),
+                          mix(a.normalized.sequence.duration, b.normalized.sequence.duration, tau), "geodesic"),
+              colors);
+  }
+  scene.write(out);
+  report.say(message("  ", steps, " steps side by side: the first body, the way between, the second registered to it."));
+  report.wrote("geodesic", out);
+}
+
+void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, const std::filesystem::path& overview,
+          const Settings& settings, Report& report) {
+  ProgressLine line;
+  MovingMeanOptions options;
+  options.registration = registration_options(settings);
+  options.karcher.threads = settings.threads;
+  std::vector<AnyAnimatedSurface> surfaces;
+  for (const auto& body : bodies) surfaces.push_back(body.surface);
+  const TriangleMesh& sphere = bodies.front().sphere;
+  const int frames = settings.frames;
+  const MovingMean m = mean_of_moving(surfaces, sphere, frames, options, std::ref(line));
+  const std::string section = report.section();
+  for (std::size_t i = 1; i < bodies.size(); ++i) {
+    report.say(bodies[i].normalized.sequence.name + " registered to " + bodies[0].normalized.sequence.name + ":");
+    report.section(message(section, section.empty() ? "" : ".", "registrations.", i));
+    report_registration(m.registrations[i], report);
+  }
+  report.section(section);
+  report.say("Mean:");
+  const KarcherSummary& summary = m.curves.summary;
+  report.figure("components", "principal components", m.pca_variances.size());
+  report.figure("components_residual", "mean squared error they leave", m.pca_residual);
+  report.figure("energy", "energy before any warp and by iteration", summary.energy);
+  report.figure("min_slope", "smallest slope of the time warps", summary.min_slope);
+  report.figure("converged", "converged", summary.converged);
+  say_units(report);
+
+  Scene all;
+  const Mat3X colors = place_colors(bodies.front(), sphere.vertices);
+  Mat3X way = Mat3X::Zero(3, frames);
+  double scale = 0, duration = 0;
+  const double share = 1 / double(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    MovingRegistration r = m.registrations[i];
+    r.temporal.warp = m.curves.warps[i];
+    way += share * r.spatial.rotation * relative_trajectory(bodies[i].normalized, r.temporal.warp, frames);
+    scale += share * bodies[i].normalized.scale;
+    duration += share * bodies[i].normalized.sequence.duration;
+    if (!overview.empty()) all.add(registered(bodies[i], r, sphere, frames), colors);
+  }
+  const MeshSequence result = denormalize(m.frames, sphere.faces, way, scale, duration, "mean");
+  if (!out.empty()) {
+    Scene alone;
+    alone.add(result);
+    alone.write(out);
+    report.wrote("mean", out);
+  }
+  if (overview.empty()) return;
+  all.add(result, colors);
+  all.write(overview);
+  report.say("  Side by side: every body on the first's triangles and the mean's clock, the mean last. Colours correspond.");
+  report.wrote("overview", overview);
+}
+
+}  // namespace dsns::program

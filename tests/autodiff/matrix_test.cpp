@@ -1,0 +1,193 @@
+#include "catch.hpp"
+
+#include <dsns/autodiff/dual.hpp>
+#include <dsns/autodiff/matrix.hpp>
+#include <dsns/autodiff/tape.hpp>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+using namespace dsns;
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+Matrix random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Matrix m(rows, cols);
+  for (double& x : m.reshaped()) x = uniform(random);
+  return m;
+}
+
+const auto tanh_entries = [](Eigen::Index n, auto* y, auto* slope) {
+  using std::tanh;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    y[i] = tanh(y[i]);
+    slope[i] = 1 - y[i] * y[i];
+  }
+};
+
+/// Parameters of a small network with every kind of node, and their gradients.
+template <class T>
+struct Parameters {
+  Eigen::MatrixX<T> w1, w2, b, dw1, dw2, db;
+
+  Parameters()
+      : w1(random_matrix(4, 3, 1).cast<T>()), w2(random_matrix(4, 4, 2).cast<T>()), b(random_matrix(4, 1, 3).cast<T>()) {
+    clear();
+  }
+  void clear() {
+    dw1 = Eigen::MatrixX<T>::Zero(4, 3);
+    dw2 = Eigen::MatrixX<T>::Zero(4, 4);
+    db = Eigen::MatrixX<T>::Zero(4, 1);
+  }
+};
+
+template <class T>
+typename MatrixTape<T>::Node parameter(MatrixTape<T>& tape, const Eigen::MatrixX<T>& value, Eigen::MatrixX<T>& gradient) {
+  return tape.parameter(typename MatrixTape<T>::Value(value.data(), value.rows(), value.cols()),
+                        typename MatrixTape<T>::Gradient(gradient.data(), gradient.rows(), gradient.cols()));
+}
+
+/// | tanh(w2 tanh(w1 x + b) + tanh(w1 x + b)) + w2 x' - target |^2 where b is shared; fused layers or one node an operation.
+template <class T>
+typename MatrixTape<T>::Node network(MatrixTape<T>& tape, Parameters<T>& p, const Eigen::MatrixX<T>& x,
+                                     const Eigen::MatrixX<T>& target, bool fused) {
+  const auto w1 = parameter(tape, p.w1, p.dw1), w2 = parameter(tape, p.w2, p.dw2), b = parameter(tape, p.b, p.db);
+  const auto in = tape.constant(x);
+  const auto first = fused ? tape.layer(w1, b, in, tanh_entries)
+                           : tape.apply(tape.add(tape.product(w1, in), b), tanh_entries);
+  const auto second =
+      fused ? tape.layer(w2, b, first, first, tanh_entries)
+            : tape.apply(tape.add(tape.add(tape.product(w2, first), b), first), tanh_entries);
+  return tape.squared_error(tape.add(tape.product(w2, second), first), target);
+}
+
+}  // namespace
+
+TEST_CASE("matrix tape: gradients equal those of the scalar tape, fused or not", "[autodiff]") {
+  using V = Var<double>;
+  const Matrix x = random_matrix(3, 5, 4), target = random_matrix(4, 5, 5);
+  Parameters<double> p;
+
+  Tape<double> scalar;
+  const auto recording = scalar.record();
+  const auto variables = [&](const Matrix& m) {
+    Eigen::MatrixX<V> v(m.rows(), m.cols());
+    for (Eigen::Index k = 0; k < m.size(); ++k) v.reshaped()[k] = scalar.variable(m.reshaped()[k]);
+    return v;
+  };
+  const Eigen::MatrixX<V> w1 = variables(p.w1), w2 = variables(p.w2), b = variables(p.b);
+  V loss(0);
+  for (Eigen::Index j = 0; j < x.cols(); ++j) {
+    const Eigen::VectorX<V> z = w1 * x.col(j).cast<V>() + b.col(0);
+    const Eigen::VectorX<V> first = z.unaryExpr([](const V& y) { return tanh(y); });
+    const Eigen::VectorX<V> u = w2 * first + b.col(0) + first;
+    const Eigen::VectorX<V> second = u.unaryExpr([](const V& y) { return tanh(y); });
+    const Eigen::VectorX<V> out = w2 * second + first;
+    for (Eigen::Index k = 0; k < 4; ++k) loss += sqr(out[k] - target(k, j));
+  }
+  scalar.backward(loss);
+  const auto check = [&](const Eigen::MatrixX<V>& v, const Matrix& gradient) {
+    for (Eigen::Index k = 0; k < v.size(); ++k)
+      CHECK(gradient.reshaped()[k] == Approx(scalar.adjoint(v.reshaped()[k])).epsilon(1e-12).margin(1e-13));
+  };
+
+  MatrixTape<double> tape;
+  for (const bool fused : {false, true, true}) {  // the last on used memory
+    INFO("fused " << fused);
+    p.clear();
+    tape.clear();
+    const auto result = network(tape, p, x, target, fused);
+    tape.backward(result);
+    CHECK(tape.value(result)(0, 0) == Approx(loss.f).epsilon(1e-13));
+    check(w1, p.dw1);
+    check(w2, p.dw2);
+    check(b, p.db);
+  }
+}
+
+TEST_CASE("matrix tape: gradients against central differences", "[autodiff]") {
+  const Matrix x = random_matrix(3, 5, 6), target = random_matrix(4, 5, 7);
+  Parameters<double> p;
+  MatrixTape<double> tape;
+  const auto loss = [&] {
+    tape.clear();
+    const auto result = network(tape, p, x, target, true);
+    return std::pair(result, tape.value(result)(0, 0));
+  };
+  tape.backward(loss().first);
+  const Matrix gradient = p.dw1;
+  const double h = 1e-6;
+  for (Eigen::Index k = 0; k < p.w1.size(); ++k) {
+    const double before = p.w1.reshaped()[k];
+    p.w1.reshaped()[k] = before + h;
+    const double up = loss().second;
+    p.w1.reshaped()[k] = before - h;
+    const double down = loss().second;
+    p.w1.reshaped()[k] = before;
+    CHECK(gradient.reshaped()[k] == Approx((up - down) / (2 * h)).epsilon(1e-7).margin(1e-8));
+  }
+}
+
+TEST_CASE("matrix tape: forward scalars inside give the derivative of the gradient", "[autodiff]") {
+  using D = Dual<double, 1>;
+  const Matrix x = random_matrix(3, 2, 8), target = random_matrix(4, 2, 9);
+  const double h = 1e-6;
+  const auto gradient_at = [&](double shift) {
+    Parameters<double> p;
+    p.w1(1, 2) += shift;
+    MatrixTape<double> tape;
+    tape.backward(network(tape, p, x, target, true));
+    return p.dw2;
+  };
+  Parameters<D> p;
+  p.w1(1, 2).g[0] = 1;
+  MatrixTape<D> tape;
+  tape.backward(network<D>(tape, p, x.cast<D>(), target.cast<D>(), true));
+  const Matrix difference = (gradient_at(h) - gradient_at(-h)) / (2 * h);
+  for (Eigen::Index k = 0; k < difference.size(); ++k)
+    CHECK(p.dw2.reshaped()[k].g[0] == Approx(difference.reshaped()[k]).epsilon(1e-6).margin(1e-7));
+}
+
+TEST_CASE("matrix tape: gradients add up over sweeps and carry the seed", "[autodiff]") {
+  const Matrix x = random_matrix(3, 5, 10), target = random_matrix(4, 5, 11);
+  Parameters<double> p;
+  MatrixTape<double> tape;
+  const auto result = network(tape, p, x, target, true);
+  tape.backward(result);
+  const Matrix once = p.dw2;
+  tape.backward(result, 2.0);
+  CHECK(p.dw2.isApprox(3 * once, 1e-14));
+}
+
+TEST_CASE("matrix tape: adjoints of inner nodes, and of nodes the result does not depend on", "[autodiff]") {
+  Matrix w = random_matrix(2, 2, 12), dw = Matrix::Zero(2, 2);
+  const Matrix target = Matrix::Zero(2, 3);
+  MatrixTape<double> tape;
+  const auto x = tape.constant(random_matrix(2, 3, 13));
+  const auto y = tape.product(parameter(tape, w, dw), x), unused = tape.add(y, y);
+  tape.backward(tape.squared_error(y, target));
+  CHECK(tape.adjoint(y).isApprox(2 * Matrix(tape.value(y)), 1e-15));
+  CHECK(tape.adjoint(unused).isZero());
+  CHECK(tape.adjoint(x).isZero());  // constants take no part
+  CHECK(dw.isApprox(2 * tape.value(y) * tape.value(x).transpose(), 1e-14));
+}
+
+TEST_CASE("matrix tape: shapes that do not fit are named", "[autodiff]") {
+  MatrixTape<double> tape;
+  const auto a = tape.constant(Matrix::Zero(2, 3)), b = tape.constant(Matrix::Zero(2, 2));
+  CHECK_THROWS_AS(tape.product(a, b), InvalidArgument);
+  CHECK_THROWS_AS(tape.add(a, b), InvalidArgument);
+  CHECK_THROWS_AS(tape.squared_error(a, Matrix::Zero(3, 3)), InvalidArgument);
+  CHECK_THROWS_AS(tape.layer(a, b, a, tanh_entries), InvalidArgument);
+  CHECK_THROWS_AS(tape.backward(a), InvalidArgument);
+  try {
+    tape.product(a, b);
+  } catch (const InvalidArgument& error) {
+    CHECK(std::string(error.what()) == "MatrixTape::product: 2 x 3 times 2 x 2");
+  }
+}

@@ -1,0 +1,126 @@
+#include "catch.hpp"
+
+#include <dsns/nn/fit.hpp>
+#include <dsns/surface/analytic.hpp>
+
+using namespace dsns;
+
+namespace {
+
+/// An ellipsoid whose axes pulse and that drifts.
+struct PulsingEllipsoid {
+  template <class T>
+  Vec3<T> operator()(const Vec3<T>& s, const T& t) const {
+    using std::sin;
+    const T a = 2 + 0.3 * sin(2 * pi * t);
+    return {a * s.x() + 5, (3 - a / 2) * s.y() - t, s.z()};
+  }
+};
+static_assert(AnimatedSurface<PulsingEllipsoid>);
+
+FitOptions quick() {
+  FitOptions o;
+  o.encoding.harmonic_degree = 2;
+  o.encoding.time_frequencies = 2;
+  o.width = 16;
+  o.blocks = 1;
+  o.points = 1000;
+  o.times = 16;
+  o.batch = 256;
+  o.steps = 2000;
+  o.learning_rate = 1e-3;
+  return o;
+}
+
+/// Mean squared coordinate error in units of the fit's scale, at points and times the fit never saw.
+double held_out_error(const NeuralSurface& fitted) {
+  std::mt19937_64 random(99);
+  const Mat3X s = detail::uniform_sphere_points(400, random);
+  double sum = 0;
+  for (int k = 0; k < 7; ++k) {
+    const double t = (k + 0.41) / 7;
+    sum += (fitted.positions(s, t) - positions(PulsingEllipsoid{}, s, t)).squaredNorm();
+  }
+  return sum / (3.0 * 400 * 7) / (fitted.scale() * fitted.scale());
+}
+
+}  // namespace
+
+TEST_CASE("fit: a moving ellipsoid is reached to 1e-5 of its size squared", "[nn]") {
+  double last_fraction = -1;
+  const FitResult fit = fit_neural_surface(PulsingEllipsoid{}, quick(), [&](std::string_view stage, double fraction) {
+    CHECK(stage == "fit");
+    CHECK(fraction >= last_fraction);
+    last_fraction = fraction;
+  });
+  CHECK(last_fraction == 1);
+  CHECK(held_out_error(fit.surface) < 1e-5);
+  CHECK(fit.summary.steps == 2000);
+  CHECK(fit.summary.stopped == FitStop::steps);
+  CHECK(fit.summary.parameters == fit.surface.network().parameters().size());
+  CHECK(fit.summary.loss.size() == 100);
+  CHECK(fit.summary.loss.back() < 1e-3 * fit.summary.loss.front());
+  CHECK(fit.summary.cpu_seconds > 0);
+  CHECK(fit.surface.scale() == Approx(2.4).epsilon(0.1));
+  CHECK(fit.surface.translation().x() == Approx(5).epsilon(0.05));
+}
+
+TEST_CASE("fit: the same seed gives the same bits with any number of threads, another seed does not", "[nn]") {
+  FitOptions o = quick();
+  o.steps = 50;
+  const auto parameters = [&] { return fit_neural_surface(PulsingEllipsoid{}, o).surface.network().parameters(); };
+  const Eigen::VectorXd one = parameters();
+  o.threads = 3;
+  CHECK(parameters() == one);
+  o.seed = 1;
+  CHECK(parameters() != one);
+}
+
+TEST_CASE("fit: a budget of time ends it", "[nn]") {
+  FitOptions o = quick();
+  o.steps = 100000000;
+  o.seconds = 0.1;
+  const FitSummary summary = fit_neural_surface(PulsingEllipsoid{}, o).summary;
+  CHECK(summary.stopped == FitStop::seconds);
+  CHECK(summary.steps > 0);
+}
+
+TEST_CASE("fit: points come from the caller's sampler", "[nn]") {
+  FitOptions o = quick();
+  o.steps = 1;
+  int asked = 0;
+  o.sampler = [&](int n, std::mt19937_64& random) {
+    asked = n;
+    Mat3X s = detail::uniform_sphere_points(n, random);
+    s.row(2) = s.row(2).cwiseAbs();
+    return s;
+  };
+  const FitResult fit = fit_neural_surface(PulsingEllipsoid{}, o);
+  CHECK(asked == 1000);
+  CHECK(fit.surface.translation().z() > 0.4);
+  o.sampler = [](int n, std::mt19937_64&) { return Mat3X(Mat3X::Ones(3, n)); };
+  CHECK_THROWS_AS(fit_neural_surface(PulsingEllipsoid{}, o), InvalidArgument);
+}
+
+TEST_CASE("fit: options without meaning are refused, divergence is reported", "[nn]") {
+  FitOptions o = quick();
+  o.batch = 100;
+  CHECK_THROWS_AS(fit_neural_surface(PulsingEllipsoid{}, o), InvalidArgument);
+  o = quick();
+  o.times = 1;
+  CHECK_THROWS_AS(fit_neural_surface(PulsingEllipsoid{}, o), InvalidArgument);
+  o = quick();
+  o.learning_rate = 1e30;
+  CHECK_THROWS_AS(fit_neural_surface(PulsingEllipsoid{}, o), Error);
+}
+
+TEST_CASE("fit: the paper's configuration has its size", "[nn]") {
+  const FitOptions o = paper_fit();
+  MlpShape shape;
+  shape.inputs = static_cast<int>(o.encoding.features());
+  shape.width = o.width;
+  shape.blocks = o.blocks;
+  CHECK(shape.parameter_count() == 12681219);
+  CHECK(o.batch == 80000);
+  CHECK(o.learning_rate == 1e-4);
+}

@@ -1,0 +1,68 @@
+#include "catch.hpp"
+#include "support/sphere_points.hpp"
+
+#include <dsns/sphere/diffeomorphism.hpp>
+#include <dsns/surface/jets.hpp>
+
+using namespace dsns;
+
+TEST_CASE("the identity and rotations are themselves", "[sphere]") {
+  const Mat3X s = test::sphere_points();
+  CHECK((SphereDiffeomorphism()(s) - s).norm() < 1e-14);
+  const Mat3 R = rotation_exp(Vec3d(0.2, 1.1, -0.4));
+  const SphereDiffeomorphism turn(R);
+  CHECK((turn(s) - R * s).norm() < 1e-13);
+  CHECK(certify(turn).min_jacobian == Approx(1));
+}
+
+TEST_CASE("a composition of fields has the differential of its jets", "[sphere]") {
+  SphereDiffeomorphism gamma(rotation_exp(Vec3d(0.5, 0, 1)));
+  const SphereDiffeomorphism random = random_diffeomorphism(3, 5, 0.3);
+  for (const auto& v : random.increments()) gamma.append(v);
+  const ChartBatch c = charts_at(test::sphere_points(100));  // more than one tile
+  const SphereDisplacement d = gamma.displacement(c);
+  double worst = 0;
+  for (Index i = 0; i < c.size(); ++i) {
+    const auto jet = gamma(detail::chart_jet(c, i));
+    for (int k = 0; k < 3; ++k)
+      worst = std::max({worst, std::abs(jet[k].f - d.y(k, i)), std::abs(jet[k].g[0] - d.y1(k, i)),
+                        std::abs(jet[k].g[1] - d.y2(k, i))});
+  }
+  CHECK(worst < 1e-12);
+  CHECK((gamma(c.s) - d.y).norm() < 1e-12);
+}
+
+TEST_CASE("the Jacobian of a diffeomorphism integrates to the sphere's area", "[sphere]") {
+  const SphereDiffeomorphism gamma = random_diffeomorphism(8, 3, 0.25);
+  const SphereQuadrature q = sphere_quadrature(40);
+  CHECK(gamma.displacement(charts_at(q.points)).J.dot(q.weights) == Approx(4 * pi).epsilon(1e-8));
+}
+
+TEST_CASE("the inverse brings points back", "[sphere]") {
+  const Mat3X s = test::sphere_points();
+  SphereDiffeomorphism gamma(rotation_exp(Vec3d(1, 0.3, 0)));
+  const SphereDiffeomorphism random = random_diffeomorphism(11, 4, 0.35);
+  for (const auto& v : random.increments()) gamma.append(v);
+  REQUIRE(certify(gamma).holds());
+  CHECK((gamma.inverse(gamma(s)) - s).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((gamma(gamma.inverse(s)) - s).cwiseAbs().maxCoeff() < 1e-12);
+}
+
+TEST_CASE("a map with a fold is not certified", "[sphere]") {
+  SphereVectorField v = SphereVectorField::zero(4);
+  v.a[20] = 1.5;
+  SphereDiffeomorphism folded;
+  folded.append(v);
+  CHECK_FALSE(certify(folded).holds());
+}
+
+TEST_CASE("random diffeomorphisms have the size asked for and repeat", "[sphere]") {
+  const double size = 8 * pi / 180;
+  const SphereQuadrature q = fibonacci_sphere(1000);
+  const Mat3X y = random_diffeomorphism(5, 3, size)(q.points);
+  double square = 0;
+  for (Index i = 0; i < y.cols(); ++i) square += std::pow(angle_between(y.col(i), q.points.col(i)), 2) / double(y.cols());
+  CHECK(std::sqrt(square) < size);
+  CHECK(std::sqrt(square) > 0.3 * size);
+  CHECK(random_diffeomorphism(5, 3, size)(q.points) == y);
+}

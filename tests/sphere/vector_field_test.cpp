@@ -1,0 +1,59 @@
+#include "catch.hpp"
+#include "support/sphere_points.hpp"
+
+#include <dsns/sphere/vector_field.hpp>
+#include <dsns/surface/jets.hpp>
+
+using namespace dsns;
+
+namespace {
+
+SphereVectorField some_field(int degree, double size) {
+  SphereVectorField v = SphereVectorField::zero(degree);
+  for (Index k = 1; k < v.a.size(); ++k) {
+    v.a[k] = size * std::sin(1.3 * double(k)) / double(k);
+    v.b[k] = size * std::cos(0.7 * double(k)) / double(k);
+  }
+  return v;
+}
+
+}  // namespace
+
+TEST_CASE("vector fields are tangent, and their divergence is -l(l+1) Y of the gradient part", "[sphere]") {
+  const ChartBatch c = charts_at(test::sphere_points());
+  const SphereVectorField v = some_field(5, 0.4);
+  const Eigen::ArrayXd l = harmonic_degrees(5);
+  for (Index i = 0; i < c.size(); ++i) {
+    const auto jet = evaluate(v, detail::chart_jet(c, i));
+    const Vec3d s = c.s.col(i), value(jet[0].f, jet[1].f, jet[2].f);
+    CHECK(std::abs(value.dot(s)) < 1e-14);
+    double divergence = 0;
+    for (int k = 0; k < 3; ++k) divergence += c.e1(k, i) * jet[k].g[0] + c.e2(k, i) * jet[k].g[1];
+    const Eigen::VectorXd y = harmonics<double>(s, 5);
+    CHECK(divergence == Approx((-l * (l + 1) * v.a.array() * y.array()).sum()).margin(1e-12));
+  }
+}
+
+TEST_CASE("displacement agrees with jets through the exponential, for tiny and for long steps", "[sphere]") {
+  const double size = GENERATE(0.0, 1e-9, 1e-3, 0.3, 2.5);
+  const ChartBatch c = charts_at(test::sphere_points());
+  const SphereVectorField v = some_field(4, size);
+  const SphereDisplacement d = displace(v, c, harmonic_jets(c.s, 6));
+  double worst = 0;
+  for (Index i = 0; i < c.size(); ++i) {
+    const auto jet = exponential(v, detail::chart_jet(c, i));
+    for (int k = 0; k < 3; ++k)
+      worst = std::max({worst, std::abs(jet[k].f - d.y(k, i)), std::abs(jet[k].g[0] - d.y1(k, i)),
+                        std::abs(jet[k].g[1] - d.y2(k, i))});
+    CHECK(d.y.col(i).norm() == Approx(1).epsilon(1e-14));
+    CHECK(d.J[i] == Approx(d.y.col(i).dot(d.y1.col(i).cross(d.y2.col(i)))));
+  }
+  CHECK(worst < 1e-12 * (1 + size));
+}
+
+TEST_CASE("the rotated gradient of a degree-one harmonic turns the sphere", "[sphere]") {
+  SphereVectorField v = SphereVectorField::zero(1);
+  v.b[2] = 0.7 / std::sqrt(3 / (4 * pi));  // Y = sqrt(3/4pi) z, so v = 0.7 s x e_z at the equator
+  const Vec3d moved = exponential<double>(v, Vec3d::UnitX());
+  CHECK((moved - Vec3d(std::cos(0.7), -std::sin(0.7), 0)).norm() < 1e-14);
+}

@@ -1,0 +1,56 @@
+#include "catch.hpp"
+
+#include <dsns/stats/karcher_mean.hpp>
+
+using namespace dsns;
+
+namespace {
+
+Curve warped(const TimeWarp& warp, double size) {
+  constexpr Index n = 129;
+  Eigen::MatrixXd v(3, n);
+  for (Index k = 0; k < n; ++k) {
+    const double t = double(k) / (n - 1), z = warp(t);
+    v.col(k) << std::cos(3 * z), std::sin(5 * z + 1), 0.5 * std::cos(7 * z);
+    v.col(k) *= size * warp.slope(t);
+  }
+  return {Eigen::Vector3d(0, size, 0), v};
+}
+
+}  // namespace
+
+TEST_CASE("copies of one curve under known warps are brought together and centred", "[stats]") {
+  std::vector<Curve> curves;
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) curves.push_back(warped(random_warp(seed, 0.4), 1));
+  KarcherOptions options;
+  options.temporal.grid = 100;
+  options.temporal.cosines = {8, 16};
+  options.iterations = 4;
+  const KarcherMean mean = karcher_mean(curves, options);
+  const auto& energy = mean.summary.energy;
+  INFO("energy from " << energy.front() << " to " << energy.back());
+  CHECK(energy.back() < 1e-3 * energy.front());
+  for (std::size_t k = 1; k < energy.size(); ++k) CHECK(energy[k] <= energy[k - 1]);
+  CHECK(mean.summary.min_slope > 0);
+  CHECK(distance(karcher_mean(mean.warps), {}) < 1e-3);
+}
+
+TEST_CASE("the mean of one curve is the curve", "[stats]") {
+  const std::vector<Curve> one{warped(random_warp(5, 0.3), 1)};
+  const KarcherMean mean = karcher_mean(one);
+  const TimeGrid grid = time_grid();
+  CHECK(squared_norm(mean.q - warped_srvf(one[0], {}, grid), grid) < 1e-12);
+  CHECK(mean.start == one[0].start());
+  CHECK(mean.summary.converged);
+  CHECK_THROWS_AS(karcher_mean(std::vector<Curve>{}), InvalidArgument);
+}
+
+TEST_CASE("the mean of two sizes of one motion is between them", "[stats]") {
+  const std::vector<Curve> two{warped({}, 1), warped({}, 2)};
+  const KarcherMean mean = karcher_mean(two);
+  CHECK(mean.start.y() == Approx(1.5));
+  const TimeGrid grid = time_grid();
+  const double a = squared_norm(warped_srvf(two[0], {}, grid), grid);
+  // q scales with the root of the size: the mean's length is ((1 + sqrt 2) / 2)^2 of the first's
+  CHECK(squared_norm(mean.q, grid) == Approx(a * std::pow((1 + std::sqrt(2.0)) / 2, 2)).epsilon(1e-3));
+}

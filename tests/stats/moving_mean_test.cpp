@@ -1,0 +1,87 @@
+#include "catch.hpp"
+
+#include <dsns/mesh/sphere_mesh.hpp>
+#include <dsns/stats/moving_mean.hpp>
+#include <dsns/surface/analytic.hpp>
+
+using namespace dsns;
+
+namespace {
+
+LimbedBody some_body(double size, double pace) {
+  LimbedBody body;
+  body.axes = 0.3 * size * Vec3d(1, 0.8, 0.6);
+  body.limbs = {{Vec3d(1, 0.3, 0.2).normalized(), 6, 0.3 * size * Vec3d(0.7, 0.2, 0.1), 0.3 * size * Vec3d(0, 0.3, 0.1)},
+                {Vec3d(-1, 0.5, 0.4).normalized(), 5, 0.3 * size * Vec3d(-0.5, 0.3, 0.3), 0.3 * size * Vec3d(0, 0.2, 0.3), 0.3}};
+  body.pace = pace;
+  return body;
+}
+
+RegistrationOptions quick() {
+  RegistrationOptions o;
+  o.spatial.search = RotationSearch::upright;
+  o.spatial.levels = {{1, 6, 0.03, 0.5}, {2, 6, 0.02, 0.5}, {3, 8, 0.0, 0.0}};
+  o.spatial.latitudes = 12;
+  o.spatial.rotations = 100;
+  o.spatial.refined = 2;
+  o.spatial_times = 2;
+  o.rounds = 2;
+  o.temporal.grid = 80;
+  o.temporal.cosines = {8, 16};
+  o.snapshots = 12;
+  o.velocities = 64;
+  return o;
+}
+
+}  // namespace
+
+TEST_CASE("a body moving at another pace on a warped sphere is brought back in space and in time", "[stats]") {
+  const LimbedBody body = some_body(1, 0);
+  const SphereDiffeomorphism gamma = random_diffeomorphism(7, 3, 4 * pi / 180);
+  const TimeWarp zeta = random_warp(2, 0.4);
+  const RegisteredSurface moved(body, Mat3::Identity(), gamma, zeta);
+  const TriangleMesh sphere = icosphere(2);
+  const MovingRegistration r = register_moving(moved, body, sphere, quick());
+  double square = 0;
+  const Mat3X a = gamma(sphere.vertices), b = r.spatial.gamma(sphere.vertices);
+  for (Index i = 0; i < a.cols(); ++i) square += std::pow(angle_between(a.col(i), b.col(i)), 2) / double(a.cols());
+  INFO("sphere missed by " << std::sqrt(square) * 180 / pi << " degrees, time by " << distance(r.temporal.warp, zeta));
+  CHECK(std::sqrt(square) * 180 / pi < 0.5);
+  CHECK(distance(r.temporal.warp, zeta) < 1e-2);
+  CHECK(distance(r.temporal.warp, zeta) < 0.2 * distance({}, zeta));
+  CHECK(r.spatial.summary.min_jacobian > 0);
+}
+
+TEST_CASE("the mean of two sizes of a body has the size between", "[stats]") {
+  const std::vector<LimbedBody> bodies{some_body(0.9, 0.3), some_body(1.1, -0.3)};
+  MovingMeanOptions options;
+  options.registration = quick();
+  options.karcher.temporal = options.registration.temporal;
+  options.karcher.iterations = 3;
+  const TriangleMesh sphere = icosphere(2);
+  const MovingMean m = mean_of_moving(bodies, sphere, 5, options);
+  REQUIRE(m.frames.size() == 5);
+  const auto& energy = m.curves.summary.energy;
+  for (std::size_t k = 1; k < energy.size(); ++k) CHECK(energy[k] <= energy[k - 1]);
+  CHECK(energy.back() < energy.front());
+  const LimbedBody middle = some_body(1, 0);
+  const double wanted = area({positions(middle, sphere.vertices, 0), sphere.faces});
+  CHECK(area({m.frames.front(), sphere.faces}) == Approx(wanted).epsilon(0.02));
+}
+
+TEST_CASE("samples, components and curves fit together", "[stats]") {
+  const LimbedBody body = some_body(1, 0.2);
+  const TriangleMesh sphere = icosphere(2);
+  const RegistrationOptions options = quick();
+  const SurfaceSamples s = sample(body, {}, sphere.vertices, options);
+  const FunctionalPca pca = joint_pca({s}, sphere.faces, {1e-12, 80});
+  const Curve curve = shape_curve(s, pca);
+  const TimeGrid grid = time_grid();
+  const Eigen::MatrixXd points = integrate_srvf(curve.start(), warped_srvf(curve, {}, grid), grid);
+  CHECK((pca.reconstruct(points.rightCols<1>()) - positions(body, sphere.vertices, 1)).cwiseAbs().maxCoeff() < 1e-4);
+  CHECK((pca.reconstruct(interpolate(points, 0.5)) - positions(body, sphere.vertices, 0.5)).cwiseAbs().maxCoeff() < 1e-4);
+}
+
+TEST_CASE("a mean of nothing is refused", "[stats]") {
+  CHECK_THROWS_AS(mean_of_moving(std::vector<LimbedBody>{}, icosphere(0), 5), InvalidArgument);
+}
