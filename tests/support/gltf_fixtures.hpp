@@ -74,9 +74,9 @@ class GltfFixture {
       return items.empty() ? "" : ",\"" + name + "\":[" + items + "]";
     };
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}])" + list("nodes", nodes) +
-           list("meshes", meshes) + list("skins", skins) + list("animations", animations) + list("accessors", accessors_) +
-           list("bufferViews", views_) + R"(,"buffers":[{"byteLength":)" + std::to_string(bytes_.size()) +
-           (uri.empty() ? "" : R"(,"uri":")" + uri + '"') + "}]" + more + "}";
+           list("meshes", meshes) + list("skins", skins) + list("animations", animations) +
+           list("accessors", accessors_) + list("bufferViews", views_) +
+           R"(,"buffers":[{"byteLength":)" + std::to_string(bytes_.size()) + (uri.empty() ? "" : R"(,"uri":")" + uri + '"') + "}]" + more + "}";
   }
 
   std::string glb() const { return glb_of(json()); }
@@ -88,8 +88,8 @@ class GltfFixture {
     json_text.resize((json_text.size() + 3) / 4 * 4, ' ');
     std::string binary = bytes_;
     binary.resize((binary.size() + 3) / 4 * 4, '\0');
-    return "glTF" + word(2) + word(28 + json_text.size() + binary.size()) + word(json_text.size()) + "JSON" + json_text +
-           word(binary.size()) + std::string("BIN\0", 4) + binary;
+    return "glTF" + word(2) + word(28 + json_text.size() + binary.size()) +  // the header and two chunks
+           word(json_text.size()) + "JSON" + json_text + word(binary.size()) + std::string("BIN\0", 4) + binary;
   }
 
  private:
@@ -118,14 +118,15 @@ inline GltfFixture sliding_triangle() {
   const int times = file.numbers<float>("SCALAR", {0, 2});
   const int moves = file.numbers<float>("VEC3", {0, 0, 0, 6, 0, 0});
   file.nodes = R"({"mesh":0})";
-  file.meshes = R"({"primitives":[{"attributes":{"POSITION":)" + text(points) + R"(},"indices":)" + text(corners) + "}]}";
+  file.meshes =
+      R"({"primitives":[{"attributes":{"POSITION":)" + text(points) + R"(},"indices":)" + text(corners) + "}]}";
   file.animations = one_track("Rig|slide", times, moves, "LINEAR", "translation");
   return file;
 }
 
 /// Three vertices on two joints; the second joint, one unit along x from the first, turns by 90 degrees about z from
-/// t = 0.5 to 2.5 s. Vertex 0 hangs on joint 0, vertex 1 at (2, 0, 0) on joint 1, vertex 2 at (1, 1, 0) half on each. Every
-/// influence beyond the first four is in the second set, as 16-bit fractions. The mesh node's own translation must not
+/// t = 0.5 to 2.5 s. Vertex 0 hangs on joint 0, vertex 1 at (2, 0, 0) on joint 1, vertex 2 at (1, 1, 0) on both alike: its
+/// second joint is in the second set of influences, as a 16-bit fraction. The mesh node's own translation must not
 /// matter; the armature is 3 units up.
 inline GltfFixture two_joints() {
   GltfFixture file;

@@ -10,7 +10,7 @@
 namespace dsns {
 
 /// Not-a-knot cubic spline with `knots` equidistant knots on [0, 1]: twice continuously differentiable, fourth order,
-/// exact for cubics. Three knots give the parabola, two the line, one the constant. Beyond 0 and 1 the end pieces go on.
+/// exact for cubics. Three knots give the parabola, two the line, one the constant. Outside, the end pieces continue.
 /// accuracy 1e-13 on cubics [core/spline_test]
 /// source   de Boor, A Practical Guide to Splines, chapter IV; second derivatives at the knots as unknowns
 class UniformSpline {

@@ -67,8 +67,8 @@ inline void read_influences(const GltfFile& file, const tinygltf::Primitive& pri
     file.check(primitive.attributes.count(weights) > 0, joints, " has no ", weights, ": export the file again");
     part.joints.conservativeResize(4 * (set + 1), n);
     part.weights.conservativeResize(4 * (set + 1), n);
-    part.joints.bottomRows(4) =
-        read_accessor(file, primitive.attributes.at(joints), TINYGLTF_TYPE_VEC4, joints, n).cast<int>();
+    const auto numbers = read_accessor(file, primitive.attributes.at(joints), TINYGLTF_TYPE_VEC4, joints, n);
+    part.joints.bottomRows(4) = numbers.cwiseMax(-1).cwiseMin(1e9).cast<int>();
     part.weights.bottomRows(4) = read_accessor(file, primitive.attributes.at(weights), TINYGLTF_TYPE_VEC4, weights, n);
   }
   const int joint_count = static_cast<int>(part.skin->joints.size());

@@ -183,9 +183,9 @@ inline void check_bodies(const std::vector<MeshSequence>& bodies, const GltfWrit
 
 }  // namespace detail::gltf
 
-/// Writes bodies into one GLB file: each a node with a mesh of its own, one clip that moves them all, the frames of each
-/// body equidistant over the clip. Whoever reads the file sees it whole or not at all.
-/// accuracy float: 1e-7 of the body's size, read back by read_gltf [io/gltf_writer_test]
+/// Writes bodies into one GLB file: each a node with a mesh of its own, one clip that moves them all, a body's frames
+/// equidistant over the clip. Whoever reads the file sees it whole or not at all.
+/// accuracy 1e-7 of the largest coordinate, read back by read_gltf [io/gltf_writer_test]
 /// throws   InvalidArgument for bodies that are no animation, FileError where the file cannot be written
 inline void write_gltf(const std::filesystem::path& path, const std::vector<MeshSequence>& bodies,
                        const GltfWriteOptions& options = {}) {

@@ -4,7 +4,8 @@
 
 namespace dsns {
 
-/// Passes exactly the triangulations of a sphere: closed, oriented alike, manifold, one piece, genus 0, all vertices used.
+/// Passes exactly the triangulations of a sphere:
+/// closed, oriented alike, manifold, one piece, genus 0, no vertex unused.
 /// throws   UnusableMesh with one sentence on what is wrong [mesh/spherical_parameterization_test]
 ///          InvalidArgument where a face names a vertex that does not exist
 inline void require_sphere_topology(const Faces& faces, Index vertex_count) {

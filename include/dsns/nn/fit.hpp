@@ -117,7 +117,7 @@ struct TrainingSet {
 
 /// One tile of a batch: its own tape and gradient, so that the sum over tiles does not depend on threads.
 struct TrainingTile {
-  static constexpr Index columns = 128;
+  static constexpr Index columns = 64;
   MatrixTape<float> tape;
   Eigen::VectorXf gradient;
   Eigen::MatrixXf targets{3, columns};
