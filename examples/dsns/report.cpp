@@ -19,8 +19,23 @@ nlohmann::ordered_json& Report::at(const std::string& key) {
   return *place;
 }
 
-void Report::line(const std::string& label, const std::string& value) {
-  std::cout << "  " << label << std::string(label.size() < 44 ? 44 - label.size() : 1, ' ') << value << '\n';
+namespace {
+
+/// Six digits for people; the JSON keeps all.
+std::string readable(const nlohmann::ordered_json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_number_float()) return message(value.get<double>());
+  if (!value.is_array()) return value.dump();
+  std::string list;
+  for (const auto& item : value) list += (list.empty() ? "" : ", ") + readable(item);
+  return list;
+}
+
+}  // namespace
+
+void Report::line(const std::string& label, const nlohmann::ordered_json& value) {
+  std::cout << "  " << label << std::string(label.size() < 44 ? 44 - label.size() : 1, ' ') << readable(value) << '\n';
 }
 
 void Report::wrote(const std::string& key, const std::filesystem::path& path) {

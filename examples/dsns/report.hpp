@@ -20,7 +20,7 @@ class Report {
   void figure(const std::string& key, const std::string& label, const T& value) {
     nlohmann::ordered_json& place = at(key);
     place = value;
-    line(label, place.dump());
+    line(label, place);
   }
   /// A file that was written.
   void wrote(const std::string& key, const std::filesystem::path& path);
@@ -29,7 +29,7 @@ class Report {
 
  private:
   nlohmann::ordered_json& at(const std::string& key);
-  static void line(const std::string& label, const std::string& value);
+  static void line(const std::string& label, const nlohmann::ordered_json& value);
   nlohmann::ordered_json json_;
   std::string section_;
 };

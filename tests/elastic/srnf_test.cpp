@@ -10,7 +10,7 @@ using namespace dsns;
 
 namespace {
 
-LimbedBody some_body() {
+LimbedBody srnf_body() {
   LimbedBody body;
   body.axes = {1, 0.8, 0.6};
   body.limbs = {{Vec3d(1, 1, 0).normalized(), 5, Vec3d(0.6, 0.3, 0.2), Vec3d(0, 0.2, 0.1), 0.2},
@@ -23,13 +23,13 @@ LimbedBody some_body() {
 TEST_CASE("the squared norm of an SRNF is the area", "[elastic]") {
   const SphereQuadrature q = sphere_quadrature(60);
   CHECK(srnf(Ellipsoid{2, 2, 2}, q.points).colwise().squaredNorm() * q.weights == Approx(16 * pi).epsilon(1e-12));
-  const LimbedBody body = some_body();
+  const LimbedBody body = srnf_body();
   const auto f = at_time(body, 0.4);
   CHECK(srnf(f, q.points).colwise().squaredNorm() * q.weights == Approx(measure(f, q).area).epsilon(1e-12));
 }
 
 TEST_CASE("derivatives of the SRNF agree with central differences", "[elastic]") {
-  const LimbedBody body = some_body();
+  const LimbedBody body = srnf_body();
   const auto f = at_time(body, 0.4);
   const ChartBatch c = charts_at(test::sphere_points());
   const SrnfJets q = srnf(jets(f, c));
@@ -41,7 +41,7 @@ TEST_CASE("derivatives of the SRNF agree with central differences", "[elastic]")
 }
 
 TEST_CASE("the SRNF of a turned and reparametrised surface is O sqrt(J) h(gamma)", "[elastic]") {
-  const LimbedBody body = some_body();
+  const LimbedBody body = srnf_body();
   const SphereDiffeomorphism gamma = random_diffeomorphism(6, 4, 0.3);
   const Mat3 O = rotation_exp(Vec3d(0.7, -0.2, 0.4));
   const RegisteredSurface moved(body, O, gamma);

@@ -24,7 +24,7 @@ Curve curve(const TimeWarp& warp) {
   return {Eigen::VectorXd::Zero(5), v};
 }
 
-TemporalOptions quick() {
+TemporalOptions quick_options() {
   TemporalOptions o;
   o.grid = 100;
   o.cosines = {8, 16};
@@ -36,7 +36,7 @@ TemporalOptions quick() {
 TEST_CASE("a known warp of time is recovered", "[elastic]") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
   const TimeWarp warp = random_warp(seed, 0.5);
-  const TemporalResult r = register_temporally(curve({}), curve(warp), quick());
+  const TemporalResult r = register_temporally(curve({}), curve(warp), quick_options());
   INFO("the warp is " << distance(warp, {}) << ", missed by " << distance(r.warp, inverse(warp)));
   CHECK(distance(r.warp, inverse(warp)) < 1e-3);
   CHECK(r.summary.energy_after < 1e-3 * r.summary.energy_before);
@@ -50,9 +50,9 @@ TEST_CASE("a strong warp is recovered with the default options", "[elastic]") {
 
 TEST_CASE("a curve is registered to itself, and to a resting one, by the identity", "[elastic]") {
   const Curve rest(Eigen::VectorXd::Zero(5), Eigen::MatrixXd::Zero(5, 9));
-  CHECK(distance(register_temporally(curve({}), curve({}), quick()).warp, {}) == 0);
-  CHECK(distance(register_temporally(rest, rest, quick()).warp, {}) == 0);
-  const TemporalResult r = register_temporally(curve({}), rest, quick());
+  CHECK(distance(register_temporally(curve({}), curve({}), quick_options()).warp, {}) == 0);
+  CHECK(distance(register_temporally(rest, rest, quick_options()).warp, {}) == 0);
+  const TemporalResult r = register_temporally(curve({}), rest, quick_options());
   CHECK(r.summary.energy_after <= r.summary.energy_before);
   CHECK(distance(r.warp, {}) < 1e-12);
 }

@@ -76,7 +76,8 @@ class GltfFixture {
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}])" + list("nodes", nodes) +
            list("meshes", meshes) + list("skins", skins) + list("animations", animations) +
            list("accessors", accessors_) + list("bufferViews", views_) +
-           R"(,"buffers":[{"byteLength":)" + std::to_string(bytes_.size()) + (uri.empty() ? "" : R"(,"uri":")" + uri + '"') + "}]" + more + "}";
+           R"(,"buffers":[{"byteLength":)" + std::to_string(bytes_.size()) +
+           (uri.empty() ? "" : R"(,"uri":")" + uri + '"') + "}]" + more + "}";
   }
 
   std::string glb() const { return glb_of(json()); }
@@ -125,8 +126,8 @@ inline GltfFixture sliding_triangle() {
 }
 
 /// Three vertices on two joints; the second joint, one unit along x from the first, turns by 90 degrees about z from
-/// t = 0.5 to 2.5 s. Vertex 0 hangs on joint 0, vertex 1 at (2, 0, 0) on joint 1, vertex 2 at (1, 1, 0) on both alike: its
-/// second joint is in the second set of influences, as a 16-bit fraction. The mesh node's own translation must not
+/// t = 0.5 to 2.5 s. Vertex 0 hangs on joint 0, vertex 1 at (2, 0, 0) on joint 1, vertex 2 at (1, 1, 0) on both alike,
+/// its second joint in the second set of influences, as a 16-bit fraction. The mesh node's own translation must not
 /// matter; the armature is 3 units up.
 inline GltfFixture two_joints() {
   GltfFixture file;

@@ -13,6 +13,20 @@ namespace dsns {
 
 namespace detail {
 
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// The upper triangular R with R^T R = A, A symmetric and positive.
+inline Matrix6 upper_root(const Matrix6& A) {
+  Matrix6 R = Matrix6::Zero();
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) {
+      double sum = A(i, j);
+      for (int k = 0; k < i; ++k) sum -= R(k, i) * R(k, j);
+      R(i, j) = j == i ? std::sqrt(std::max(sum, 0.0)) : R(i, i) > 0 ? sum / R(i, i) : 0;
+    }
+  return R;
+}
+
 /// The particles' state: y = gamma(s), J and O with everything that is evaluated there.
 struct Particles {
   Mat3X y;
@@ -128,13 +142,13 @@ class SpatialProblem {
         B.row(1).segment(count, count) = -g2;
         B.row(2).head(count) = g2;
         B.row(2).segment(count, count) = g1;
-        const Eigen::MatrixX<double> U = columns(p.field, i);
+        const Eigen::MatrixXd U = columns(p.field, i);
         const double root = std::sqrt(p.J[i]);
         const Eigen::VectorXd residual = target.col(i) - root * p.field.g.col(i);
         right += weights_[i] * root * (B.transpose() * (U.transpose() * residual));
-        Eigen::Matrix<double, 6, 6> gram = weights_[i] * p.J[i] * (U.transpose() * U);
+        Matrix6 gram = weights_[i] * p.J[i] * (U.transpose() * U);
         gram.diagonal().array() += 1e-14 * gram.trace();
-        rows.middleRows(6 * (i - first), 6).noalias() = gram.llt().matrixU() * B;
+        rows.middleRows(6 * (i - first), 6).noalias() = upper_root(gram) * B;
       }
       auto& matrix = matrices[std::size_t(chunk)] = Eigen::MatrixXd::Zero(unknowns, unknowns);
       matrix.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
@@ -146,7 +160,7 @@ class SpatialProblem {
   }
 
   /// [g, g1, g2, e_x x g, e_y x g, e_z x g] of point i, components x 6.
-  static Eigen::MatrixX<double> columns(const HalfDensityJets& field, Index i) {
+  static Eigen::MatrixXd columns(const HalfDensityJets& field, Index i) {
     Eigen::MatrixXd U(field.g.rows(), 6);
     U.col(0) = field.g.col(i);
     U.col(1) = field.g1.col(i);

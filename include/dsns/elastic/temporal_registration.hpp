@@ -4,7 +4,6 @@
 #include <dsns/elastic/srvf.hpp>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -17,7 +16,7 @@ struct TemporalOptions {
   std::vector<int> cosines = {16, 24, 32};  ///< unknowns of the refinement, level by level
   int steps_per_level = 15;
   double min_slope = 0.1;   ///< warps that nearly stop the clock are not taken
-  double ridge = 1e-8;      ///< times k^4 and the norm: what a cosine must gain to be used
+  double ridge = 1e-6;      ///< times k^4 and the norm: what a cosine must gain to be used
   double tolerance = 1e-8;  ///< a level ends when a step lowers the energy by less than this share of it
 };
 
@@ -113,12 +112,11 @@ inline Eigen::VectorXd log_slope_coefficients(const Eigen::VectorXd& warp, int c
     log_slope[k] = std::log(std::clamp(sum / weights, 0.05, 20.0));
   }
   const Eigen::VectorXd middles = (Eigen::VectorXd::LinSpaced(n, 0, double(n - 1)).array() + 0.5) / double(n);
-  Eigen::MatrixXd A(n + count + 1, count + 1);
-  A.topRows(n) << Eigen::VectorXd::Ones(n), cosines(middles, count);
-  A.bottomRows(count + 1) = 1e-2 * Eigen::MatrixXd::Identity(count + 1, count + 1);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n + count + 1);
-  right.head(n) = log_slope;
-  return A.householderQr().solve(right).tail(count);
+  Eigen::MatrixXd A(n, count + 1);
+  A << Eigen::VectorXd::Ones(n), cosines(middles, count);
+  Eigen::MatrixXd normal = A.transpose() * A;
+  normal.diagonal().array() += 1e-4;
+  return normal.ldlt().solve(A.transpose() * log_slope).tail(count);
 }
 
 /// The refinement's state and its linearisation.

@@ -12,7 +12,9 @@ namespace dsns {
 
 class SphereDiffeomorphism {
  public:
-  explicit SphereDiffeomorphism(const Mat3& rotation = Mat3::Identity()) : rotation_(rotation) {}
+  /// The identity.
+  SphereDiffeomorphism() : SphereDiffeomorphism(Mat3::Identity()) {}
+  explicit SphereDiffeomorphism(const Mat3& rotation) : rotation_(rotation) {}
 
   const Mat3& rotation() const { return rotation_; }
   const std::vector<SphereVectorField>& increments() const { return increments_; }

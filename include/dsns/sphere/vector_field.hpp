@@ -134,15 +134,15 @@ inline SphereDisplacement displace(const SphereVectorField& v, const ChartBatch&
     const double x = tangent.squaredNorm();
     Dual<double, 1> seed(x);
     seed.g = {1.0};
-    const auto [cosine, sinc] = detail::cos_sinc(seed);
+    const auto at = detail::cos_sinc(seed);
     const auto image = [&](const Vec3d& t) -> Vec3d {
-      const Vec3d at = A * t;
-      const Vec3d dv = at - (t.dot(g) + s.dot(at)) * s - normal * t + t.cross(r) + s.cross(B * t);
+      const Vec3d turned = A * t;
+      const Vec3d dv = turned - (t.dot(g) + s.dot(turned)) * s - normal * t + t.cross(r) + s.cross(B * t);
       const double dx = 2 * tangent.dot(dv);
-      return cosine.f * t + cosine.g[0] * dx * s + sinc.f * dv + sinc.g[0] * dx * tangent;
+      return at.c.f * t + at.c.g[0] * dx * s + at.s.f * dv + at.s.g[0] * dx * tangent;
     };
     const Vec3d y1 = image(c.e1.col(i)), y2 = image(c.e2.col(i));
-    const Vec3d y = (cosine.f * s + sinc.f * tangent).normalized();
+    const Vec3d y = (at.c.f * s + at.s.f * tangent).normalized();
     out.y.col(i) = y;
     out.y1.col(i) = y1;
     out.y2.col(i) = y2;

@@ -1,0 +1,123 @@
+#include "catch.hpp"
+#include "support/meshes.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <dsns/io/gltf.hpp>
+#include <dsns/mesh/sphere_mesh.hpp>
+#include <dsns/surface/analytic.hpp>
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#ifdef DSNS_PROGRAM
+
+using namespace dsns;
+
+namespace {
+
+struct Run {
+  int status;
+  std::string out, err;
+};
+
+Run run(const std::filesystem::path& folder, const std::string& arguments) {
+  const auto read = [](const std::filesystem::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  };
+  const std::string command = "\"" DSNS_PROGRAM "\" " + arguments + " >\"" + (folder / "out").string() + "\" 2>\"" +
+                              (folder / "err").string() + "\" </dev/null";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder / "out"), read(folder / "err")};
+}
+
+std::string quoted(const std::filesystem::path& path) { return "\"" + path.string() + "\""; }
+
+/// A mesh that grows, so that the clip moves.
+MeshSequence growing(const TriangleMesh& mesh) {
+  MeshSequence sequence;
+  sequence.faces = mesh.faces;
+  sequence.frames = {mesh.vertices, 1.1 * mesh.vertices};
+  return sequence;
+}
+
+void check_refused(const Run& r, const std::string& reason) {
+  INFO("stderr: " << r.err);
+  CHECK(r.status == 1);
+  CHECK(r.err.rfind("dsns: ", 0) == 0);
+  CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+  CHECK(r.err.find(reason) != std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("unusable input ends with status 1 and one sentence", "[program]") {
+  const test::TemporaryFolder folder;
+  const auto file = [&](const std::string& name) { return folder.path() / name; };
+  std::ofstream(file("empty.glb"));
+  std::ofstream(file("text.glb")) << "This is a letter, not a mesh.\n";
+  write_gltf(file("torus.glb"), growing(test::torus(20, 10)));
+  TriangleMesh far = icosphere(2);
+  far.vertices.row(0).array() += 5;
+  write_gltf(file("two.glb"), growing(test::joined(icosphere(2), far)));
+  write_gltf(file("ball.glb"), growing(icosphere(2)));
+
+  check_refused(run(folder.path(), "fit " + quoted(file("nowhere.glb"))), "nowhere.glb");
+  check_refused(run(folder.path(), "fit " + quoted(file("empty.glb"))), "empty");
+  check_refused(run(folder.path(), "fit " + quoted(file("text.glb"))), "text.glb");
+  check_refused(run(folder.path(), "fit \"" + file("ball.glb").string() + "#Gallop\""), "Gallop");
+  check_refused(run(folder.path(), "fit " + quoted(file("torus.glb"))), "genus");
+  check_refused(run(folder.path(), "fit " + quoted(file("two.glb"))), "pieces");
+  check_refused(run(folder.path(), "mean " + quoted(file("ball.glb")) + " " + quoted(file("torus.glb"))), "genus");
+}
+
+TEST_CASE("wrong usage ends with status 2, help with 0", "[program]") {
+  const test::TemporaryFolder folder;
+  for (const std::string usage : {"", "frobnicate", "fit", "register one.glb", "fit a.glb --frames 1", "fit a.glb --threads x",
+                                  "mean a.glb b.glb --surface cubist", "inspect a.glb --no-such-option"}) {
+    INFO(usage);
+    const Run r = run(folder.path(), usage);
+    CHECK(r.status == 2);
+    CHECK_FALSE(r.err.empty());
+  }
+  CHECK(run(folder.path(), "--help").status == 0);
+  CHECK(run(folder.path(), "mean --help").status == 0);
+  CHECK(run(folder.path(), "--version").status == 0);
+}
+
+TEST_CASE("inspect reports a torus without refusing it, and writes JSON", "[program]") {
+  const test::TemporaryFolder folder;
+  write_gltf(folder.path() / "torus.glb", growing(test::torus(20, 10)));
+  const Run r = run(folder.path(), "inspect " + quoted(folder.path() / "torus.glb") + " --json " +
+                                       quoted(folder.path() / "t.json"));
+  CHECK(r.status == 0);
+  std::ostringstream json;
+  json << std::ifstream(folder.path() / "t.json").rdbuf();
+  CHECK(json.str().find("\"euler_characteristic\": 0") != std::string::npos);
+  CHECK(json.str().find("\"usable\": false") != std::string::npos);
+}
+
+TEST_CASE("two bodies go through registration, and the result can be read again", "[program]") {
+  const test::TemporaryFolder folder;
+  LimbedBody body;
+  body.limbs = {{Vec3d(1, 0.5, 0).normalized(), 6, Vec3d(1, 0.4, 0), Vec3d(0, 0.4, 0.2)}};
+  LimbedBody other = body;
+  other.axes = {1.2, 0.9, 1};
+  other.pace = 0.3;
+  write_gltf(folder.path() / "a.glb", sequence_of(body, icosphere(2), 6));
+  write_gltf(folder.path() / "b.glb", sequence_of(other, latitude_longitude_sphere(9, 14), 6));
+  const Run r = run(folder.path(), "geodesic " + quoted(folder.path() / "a.glb") + " " + quoted(folder.path() / "b.glb") +
+                                       " --frames 6 --points 3 -o " + quoted(folder.path() / "way.glb"));
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(r.out.find("distance") != std::string::npos);
+  const MeshSequence way = read_gltf(folder.path() / "way.glb", {"", 6}).sequence;
+  CHECK(way.vertex_count() == 3 * icosphere(2).vertices.cols());
+  CHECK(way.frame_count() == 6);
+}
+
+#endif
