@@ -36,8 +36,9 @@ Body load_body(const std::string& name, const Settings& settings, Report& report
   report.say(name + ":");
   for (const auto& note : source.notes) report.say("  " + note);
   for (const auto& action : repaired.actions) report.say("  " + action);
-  report.say(message("  mapped to the sphere: ", normalized.sequence.vertex_count(), " vertices, ", map.certificate.flips,
-                     " flipped triangles, smallest area ratio ", map.certificate.min_area_ratio));
+  report.say(message("  mapped to the sphere: ", normalized.sequence.vertex_count(), " vertices, ",
+                     map.certificate.flips, " flipped triangles, smallest area ratio ",
+                     map.certificate.min_area_ratio));
   const TriangleMesh sphere{map.sphere, normalized.sequence.faces};
   AnyAnimatedSurface surface(SampledSurface(normalized.sequence, map.sphere));
   return {std::move(normalized), sphere, map.certificate, std::move(surface)};
@@ -72,7 +73,12 @@ FitFigures fit_body(Body& body, const Settings& settings, const Progress& progre
   std::mt19937_64 held_out(~settings.seed);
   const SurfaceError e = compare(fit.surface, reference, sample_faces(sequence, sphere, 4000, held_out), times, radius);
   body.surface = AnyAnimatedSurface(fit.surface);
-  return {e.msd,  e.rms_distance, e.max_distance, e.normal_angle_mean_deg, fit.summary.parameters, fit.summary.steps,
+  return {e.msd,
+          e.rms_distance,
+          e.max_distance,
+          e.normal_angle_mean_deg,
+          fit.summary.parameters,
+          fit.summary.steps,
           fit.summary.cpu_seconds};
 }
 

@@ -2,8 +2,8 @@
 /// From a name on the command line to a moving surface that the library can compare with others.
 #include "report.hpp"
 
-#include <dsns/elastic/normalization.hpp>
 #include <dsns/core/progress.hpp>
+#include <dsns/elastic/normalization.hpp>
 #include <dsns/elastic/spatial_options.hpp>
 #include <dsns/elastic/time_warp.hpp>
 #include <dsns/mesh/repair.hpp>

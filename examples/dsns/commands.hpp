@@ -13,11 +13,12 @@ void inspect(const std::string& source, const Settings& settings, Report& report
 void fit(Body& body, const std::filesystem::path& out, const Settings& settings, Report& report);
 void register_two(const Body& first, const Body& second, const std::filesystem::path& out, const Settings& settings,
                   Report& report);
-void geodesic(const Body& first, const Body& second, const std::filesystem::path& out, int steps, const Settings& settings,
-              Report& report);
+void geodesic(const Body& first, const Body& second, const std::filesystem::path& out, int steps,
+              const Settings& settings, Report& report);
 void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, const std::filesystem::path& overview,
           const Settings& settings, Report& report);
 /// The whole chain into a folder. With no sources, makes three bodies first.
-void demo(std::vector<std::string> sources, const std::filesystem::path& folder, const Settings& settings, Report& report);
+void demo(std::vector<std::string> sources, const std::filesystem::path& folder, const Settings& settings,
+          Report& report);
 
 }  // namespace dsns::program

@@ -18,7 +18,8 @@ LimbedBody quadruped(const Build& b) {
   body.axes = {b.length, b.girth, 0.85 * b.girth};
   body.pace = b.pace;
   const auto leg = [&](double x, double z, double phase) {
-    body.limbs.push_back({Vec3d(x, -0.75, z).normalized(), 16, Vec3d(0.05 * x, -b.leg, 0.12 * z), Vec3d(0.3 * b.leg, 0, 0), phase});
+    body.limbs.push_back(
+        {Vec3d(x, -0.75, z).normalized(), 16, Vec3d(0.05 * x, -b.leg, 0.12 * z), Vec3d(0.3 * b.leg, 0, 0), phase});
   };
   leg(0.85, 0.55, 0);
   leg(0.85, -0.55, 0.5);
@@ -35,8 +36,8 @@ std::vector<std::string> make_bodies(const std::filesystem::path& folder, int fr
   TriangleMesh turned = icosphere(4);
   turned.vertices = (rotation_exp(Vec3d(0.4, -1.1, 0.6)) * turned.vertices).colwise().normalized();
   const std::vector<std::pair<Build, TriangleMesh>> bodies{{{1.0, 0.50, 0.85, 0.60, 0.0}, fine},
-                                                          {{0.9, 0.62, 0.55, 0.35, 0.6}, rings},
-                                                          {{1.2, 0.45, 1.00, 0.85, -0.5}, turned}};
+                                                           {{0.9, 0.62, 0.55, 0.35, 0.6}, rings},
+                                                           {{1.2, 0.45, 1.00, 0.85, -0.5}, turned}};
   std::vector<std::string> files;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     MeshSequence sequence = sequence_of(quadruped(bodies[i].first), bodies[i].second, frames);
@@ -53,7 +54,8 @@ std::vector<std::string> make_bodies(const std::filesystem::path& folder, int fr
 
 }  // namespace
 
-void demo(std::vector<std::string> sources, const std::filesystem::path& folder, const Settings& settings, Report& report) {
+void demo(std::vector<std::string> sources, const std::filesystem::path& folder, const Settings& settings,
+          Report& report) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   require<FileError>(!failure, "folder '", folder.string(), "' cannot be created: ", failure.message());

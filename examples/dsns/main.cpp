@@ -20,19 +20,23 @@ void add_common(CLI::App* command, Settings& settings) {
   command->add_option("--frames", settings.frames, "equidistant frames read from a clip")
       ->capture_default_str()
       ->check(CLI::Range(2, 1000));
-  command->add_option("--threads", settings.threads, "threads to use")->capture_default_str()->check(CLI::Range(1, 256));
+  command->add_option("--threads", settings.threads, "threads to use")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 256));
   command->add_option("--seed", settings.seed, "of everything random")->capture_default_str();
   command->add_option("--json", settings.json, "write every figure to this file");
 }
 
 void add_fit(CLI::App* command, Settings& settings) {
-  command->add_option("--steps", settings.steps, "training steps of a network (0: 6000)")->check(CLI::Range(0, 10000000));
+  command->add_option("--steps", settings.steps, "training steps of a network (0: 12000)")
+      ->check(CLI::Range(0, 10000000));
   command->add_option("--seconds", settings.seconds, "stop training after so many seconds (0: never)")
       ->check(CLI::Range(0.0, 1e6));
 }
 
 void add_registration(CLI::App* command, Settings& settings) {
-  const std::map<std::string, Representation> kinds{{"sampled", Representation::sampled}, {"neural", Representation::neural}};
+  const std::map<std::string, Representation> kinds{{"sampled", Representation::sampled},
+                                                    {"neural", Representation::neural}};
   command->add_option("--surface", settings.representation, "sampled: the mesh itself; neural: a network fitted to it")
       ->transform(CLI::CheckedTransformer(kinds));
   const std::map<std::string, dsns::RotationSearch> searches{{"upright", dsns::RotationSearch::upright},
@@ -71,8 +75,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Elastic analysis of moving surfaces: registered sequences, geodesics and means of animations."};
   app.set_version_flag("--version", dsns::version);
   app.require_subcommand(1);
-  app.footer("FILE is a GLB or glTF animation, FILE#Clip one of its clips (full name, or the part after the last '|'),\n"
-             "or a folder of OBJ frames. Try: dsns demo -o demo");
+  app.footer(
+      "FILE is a GLB or glTF animation, FILE#Clip one of its clips (full name, or the part after the last '|'),\n"
+      "or a folder of OBJ frames. Try: dsns demo -o demo");
   const auto command = [&](const std::string& name, const std::string& what, auto run) {
     CLI::App* sub = app.add_subcommand(name, what);
     sub->callback([&, run] {
@@ -96,10 +101,11 @@ int main(int argc, char** argv) {
   fit_command->add_option("-o,--output", out, "write the fitted animation to this GLB");
   add_fit(fit_command, settings);
 
-  CLI::App* register_command = command("register", "bring the second animation into correspondence with the first", [&] {
-    const std::vector<Body> bodies = load(sources, settings, report);
-    register_two(bodies[0], bodies[1], out, settings, report);
-  });
+  CLI::App* register_command =
+      command("register", "bring the second animation into correspondence with the first", [&] {
+        const std::vector<Body> bodies = load(sources, settings, report);
+        register_two(bodies[0], bodies[1], out, settings, report);
+      });
   register_command->add_option("FILES", sources, "two animations")->required()->expected(2);
   register_command->add_option("-o,--output", out, "write both and the registered second to this GLB");
   add_registration(register_command, settings);
@@ -115,9 +121,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(2, 50));
   add_registration(geodesic_command, settings);
 
-  CLI::App* mean_command = command("mean", "the mean of animations", [&] {
-    mean(load(sources, settings, report), out, overview, settings, report);
-  });
+  CLI::App* mean_command = command("mean", "the mean of animations",
+                                   [&] { mean(load(sources, settings, report), out, overview, settings, report); });
   mean_command->add_option("FILES", sources, "two animations or more; the first gives the triangles")
       ->required()
       ->expected(2, 1000);
@@ -125,14 +130,14 @@ int main(int argc, char** argv) {
   mean_command->add_option("--overview", overview, "write all, registered, with the mean last, to this GLB");
   add_registration(mean_command, settings);
 
-  CLI::App* demo_command = command("demo", "the whole chain; without files, on three bodies that it makes", [&] {
-    demo(sources, out.empty() ? "demo" : out, settings, report);
-  });
+  CLI::App* demo_command = command("demo", "the whole chain; without files, on three bodies that it makes",
+                                   [&] { demo(sources, out.empty() ? "demo" : out, settings, report); });
   demo_command->add_option("FILES", sources, "animations, or nothing")->expected(0, 1000);
   demo_command->add_option("-o,--output", out, "folder to write to (default: demo)");
   add_registration(demo_command, settings);
   demo_command->preparse_callback([&](std::size_t) { settings.representation = Representation::neural; });
-  demo_command->get_option("--surface")->description("neural (default here): a network fitted to each; sampled: the mesh itself");
+  demo_command->get_option("--surface")
+      ->description("neural (default here): a network fitted to each; sampled: the mesh itself");
 
   try {
     app.parse(argc, argv);

@@ -2,6 +2,8 @@
 
 #include <dsns/io/atomic_file.hpp>
 
+#include <nlohmann/json.hpp>
+
 #include <unistd.h>
 
 #include <cstdio>
@@ -11,13 +13,6 @@
 namespace dsns::program {
 
 void Report::say(const std::string& sentence) { std::cout << sentence << '\n'; }
-
-nlohmann::ordered_json& Report::at(const std::string& key) {
-  std::istringstream levels(section_.empty() ? key : section_ + "." + key);
-  nlohmann::ordered_json* place = &json_;
-  for (std::string level; std::getline(levels, level, '.');) place = &(*place)[level];
-  return *place;
-}
 
 namespace {
 
@@ -34,17 +29,33 @@ std::string readable(const nlohmann::ordered_json& value) {
 
 }  // namespace
 
-void Report::line(const std::string& label, const nlohmann::ordered_json& value) {
-  std::cout << "  " << label << std::string(label.size() < 44 ? 44 - label.size() : 1, ' ') << readable(value) << '\n';
+struct Report::Json {
+  nlohmann::ordered_json root;
+
+  nlohmann::ordered_json& at(const std::string& section, const std::string& key) {
+    std::istringstream levels(section.empty() ? key : section + "." + key);
+    nlohmann::ordered_json* place = &root;
+    for (std::string level; std::getline(levels, level, '.');) place = &(*place)[level];
+    return *place;
+  }
+};
+
+Report::Report() : json_(std::make_unique<Json>()) {}
+Report::~Report() = default;
+
+void Report::figure(const std::string& key, const std::string& label, const Value& value) {
+  nlohmann::ordered_json& place = json_->at(section_, key);
+  std::visit([&](const auto& v) { place = v; }, value);
+  std::cout << "  " << label << std::string(label.size() < 44 ? 44 - label.size() : 1, ' ') << readable(place) << '\n';
 }
 
 void Report::wrote(const std::string& key, const std::filesystem::path& path) {
-  at("files." + key) = path.string();
+  json_->at(section_, "files." + key) = path.string();
   say("Wrote " + path.string());
 }
 
 void Report::save(const std::filesystem::path& path) const {
-  if (!path.empty()) write_file_atomically(path, json_.dump(2) + "\n");
+  if (!path.empty()) write_file_atomically(path, json_->root.dump(2) + "\n");
 }
 
 ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) == 1) {}

@@ -36,7 +36,8 @@ Mat3X place_colors(const Body& body, const Mat3X& sphere) {
   const Vec3d low = all.rowwise().minCoeff(), high = all.rowwise().maxCoeff();
   Mat3X colors(3, here.cols());
   for (Index i = 0; i < here.cols(); ++i)
-    colors.col(i) = (0.1 + 0.75 * (Vec3d(here.col(i)) - low).array() / (high - low).array()).matrix().cwiseMax(0).cwiseMin(1);
+    colors.col(i) =
+        (0.1 + 0.75 * (Vec3d(here.col(i)) - low).array() / (high - low).array()).matrix().cwiseMax(0).cwiseMin(1);
   return colors;
 }
 

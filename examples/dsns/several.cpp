@@ -45,12 +45,19 @@ MeshSequence as_represented(const Body& body, int frames) {
                      relative_trajectory(n, {}, frames), n.scale, n.sequence.duration, n.sequence.name);
 }
 
-/// The body on another's sphere mesh and clock.
-MeshSequence registered(const Body& body, const MovingRegistration& r, const TriangleMesh& sphere, int frames) {
-  const RegisteredSurface view(body.surface, r.spatial.rotation, r.spatial.gamma, r.temporal.warp);
+/// Frames of the body on another's sphere mesh and clock. The sphere's points are moved once for all times.
+std::vector<Mat3X> registered_frames(const Body& body, const MovingRegistration& r, const Mat3X& sphere, int frames) {
+  const Mat3X y = r.spatial.gamma(sphere);
   std::vector<Mat3X> out;
-  for (int k = 0; k < frames; ++k) out.push_back(view.positions(sphere.vertices, double(k) / (frames - 1)));
-  return denormalize(out, sphere.faces, r.spatial.rotation * relative_trajectory(body.normalized, r.temporal.warp, frames),
+  for (int k = 0; k < frames; ++k)
+    out.push_back(r.spatial.rotation * positions(body.surface, y, r.temporal.warp(double(k) / (frames - 1))));
+  return out;
+}
+
+/// The same as a mesh with size and motion.
+MeshSequence registered(const Body& body, const MovingRegistration& r, const TriangleMesh& sphere, int frames) {
+  return denormalize(registered_frames(body, r, sphere.vertices, frames), sphere.faces,
+                     r.spatial.rotation * relative_trajectory(body.normalized, r.temporal.warp, frames),
                      body.normalized.scale, body.normalized.sequence.duration, body.normalized.sequence.name);
 }
 
@@ -72,7 +79,8 @@ void register_two(const Body& a, const Body& b, const std::filesystem::path& out
   scene.add(as_represented(b, settings.frames), place_colors(a, r.spatial.gamma.inverse(b.sphere.vertices)));
   scene.add(registered(b, r, a.sphere, settings.frames), colors);
   scene.write(out);
-  report.say("  Side by side: the first, the second, the second on the first's triangles and clock. Colours correspond.");
+  report.say(
+      "  Side by side: the first, the second, the second on the first's triangles and clock. Colours correspond.");
   report.wrote("registered", out);
 }
 
@@ -93,30 +101,34 @@ void geodesic(const Body& a, const Body& b, const std::filesystem::path& out, in
   if (out.empty()) return;
 
   const int frames = settings.frames;
-  const RegisteredSurface view(b.surface, r.spatial.rotation, r.spatial.gamma, r.temporal.warp);
   const Mat3X colors = place_colors(a, a.sphere.vertices);
+  // What the components leave of either end goes in by its share, so that the ends are the bodies themselves.
+  std::vector<Mat3X> rest_a = frames_of(a.surface, a.sphere.vertices, frames);
+  std::vector<Mat3X> rest_b = registered_frames(b, r, a.sphere.vertices, frames);
+  const auto remove_components = [&](std::vector<Mat3X>& rest, const Eigen::MatrixXd& curve) {
+    for (int k = 0; k < frames; ++k)
+      rest[std::size_t(k)] -= pca.reconstruct(interpolate(curve, double(k) / (frames - 1)));
+  };
+  remove_components(rest_a, path.points(0));
+  remove_components(rest_b, path.points(1));
   const Mat3X way_a = relative_trajectory(a.normalized, {}, frames);
   const Mat3X way_b = r.spatial.rotation * relative_trajectory(b.normalized, r.temporal.warp, frames);
-  const Eigen::MatrixXd curve_a = path.points(0), curve_b = path.points(1);
   Scene scene;
   for (int j = 0; j < steps; ++j) {
     const double tau = steps > 1 ? double(j) / (steps - 1) : 0.5;
     const Eigen::MatrixXd curve = path.points(tau);
     std::vector<Mat3X> body;
-    for (int k = 0; k < frames; ++k) {
-      const double t = double(k) / (frames - 1);
-      // What the components leave of either end goes in by its share, so that the ends are the bodies themselves.
-      const Mat3X rest_a = positions(a.surface, a.sphere.vertices, t) - pca.reconstruct(interpolate(curve_a, t));
-      const Mat3X rest_b = view.positions(a.sphere.vertices, t) - pca.reconstruct(interpolate(curve_b, t));
-      body.push_back(pca.reconstruct(interpolate(curve, t)) + (1 - tau) * rest_a + tau * rest_b);
-    }
+    for (int k = 0; k < frames; ++k)
+      body.push_back(pca.reconstruct(interpolate(curve, double(k) / (frames - 1))) +
+                     (1 - tau) * rest_a[std::size_t(k)] + tau * rest_b[std::size_t(k)]);
     scene.add(denormalize(body, a.sphere.faces, (1 - tau) * way_a + tau * way_b,
                           mix(a.normalized.scale, b.normalized.scale, tau),
                           mix(a.normalized.sequence.duration, b.normalized.sequence.duration, tau), "geodesic"),
               colors);
   }
   scene.write(out);
-  report.say(message("  ", steps, " steps side by side: the first body, the way between, the second registered to it."));
+  report.say(
+      message("  ", steps, " steps side by side: the first body, the way between, the second registered to it."));
   report.wrote("geodesic", out);
 }
 
@@ -170,7 +182,8 @@ void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, con
   if (overview.empty()) return;
   all.add(result, colors);
   all.write(overview);
-  report.say("  Side by side: every body on the first's triangles and the mean's clock, the mean last. Colours correspond.");
+  report.say(
+      "  Side by side: every body on the first's triangles and the mean's clock, the mean last. Colours correspond.");
   report.wrote("overview", overview);
 }
 

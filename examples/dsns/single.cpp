@@ -54,7 +54,8 @@ void fit(Body& body, const std::filesystem::path& out, const Settings& settings,
   report.figure("parameters", "parameters", f.parameters);
   report.figure("steps", "steps", f.steps);
   report.figure("cpu_seconds", "CPU-seconds", f.cpu_seconds);
-  report.say("  Lengths: the smallest ball around the centroid that holds all frames, root motion removed, has radius 1.");
+  report.say(
+      "  Lengths: the smallest ball around the centroid that holds all frames, root motion removed, has radius 1.");
   if (out.empty()) return;
   const MeshSequence& sequence = body.normalized.sequence;
   Scene scene;

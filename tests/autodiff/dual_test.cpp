@@ -84,7 +84,7 @@ TEST_CASE("jet2: packed index of three variables", "[autodiff]") {
 
 namespace {
 
-/// A random straight-line program over sums, products, quotients and functions, with shared and overwritten intermediates.
+/// A random straight-line program over sums, products, quotients and functions; intermediates are shared, overwritten.
 template <class T>
 T random_program(std::uint32_t seed, const T& x, const T& y) {
   using std::atan, std::exp, std::sin, std::sqrt;
@@ -94,14 +94,30 @@ T random_program(std::uint32_t seed, const T& x, const T& y) {
     T& a = r[random() % 4];
     const T b = r[random() % 4];
     switch (random() % 8) {
-      case 0: a += b; break;
-      case 1: a = sin(a) * b; break;
-      case 2: a = a / (1 + b * b); break;
-      case 3: a -= 0.5 * b; break;
-      case 4: a = sqrt(1 + a * a); break;
-      case 5: a = exp(-(a * a)) + b; break;
-      case 6: a *= atan(a); break;
-      default: a = softplus(a) - sigmoid(b); break;
+      case 0:
+        a += b;
+        break;
+      case 1:
+        a = sin(a) * b;
+        break;
+      case 2:
+        a = a / (1 + b * b);
+        break;
+      case 3:
+        a -= 0.5 * b;
+        break;
+      case 4:
+        a = sqrt(1 + a * a);
+        break;
+      case 5:
+        a = exp(-(a * a)) + b;
+        break;
+      case 6:
+        a *= atan(a);
+        break;
+      default:
+        a = softplus(a) - sigmoid(b);
+        break;
     }
   }
   return r[0] + r[1] * r[2] - r[3];

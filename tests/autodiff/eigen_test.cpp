@@ -28,7 +28,8 @@ TEMPLATE_TEST_CASE("eigen: products, norms and mixed expressions of every scalar
   CHECK(value(X(a.norm()).g[0]) == Approx(5 / std::sqrt(14.0)));
   CHECK(value(X(p.dot(a)).g[0]) == Approx(5));
   CHECK(value(X(a.cross(b).dot(a))) == Approx(0).margin(1e-5));
-  CHECK(value(X((R * (a * a.transpose())).trace()).g[0]) == Approx(6.0));  // d/du a_2^2 = 2 p_2 q_2, off-diagonals cancel
+  CHECK(value(X((R * (a * a.transpose())).trace()).g[0]) ==
+        Approx(6.0));  // d/du a_2^2 = 2 p_2 q_2, off-diagonals cancel
   const V3 unit = a.normalized();
   CHECK(value(X(unit.squaredNorm())) == Approx(1));
   CHECK(value(X(unit.squaredNorm()).g[0]) == Approx(0).margin(1e-6));

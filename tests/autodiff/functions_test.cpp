@@ -99,114 +99,199 @@ void check_unary(const std::string& name, const Function& function, const Closed
 }  // namespace
 
 TEST_CASE("functions: exponentials and logarithms have their closed derivatives in every mode", "[autodiff]") {
-  check_unary("exp", [](const auto& x) { return exp(x); }, [](Long x) { return Derivatives{std::exp(x), std::exp(x), std::exp(x)}; },
-              {-3, -0.5, 0, 0.7, 4});
-  check_unary("expm1", [](const auto& x) { return expm1(x); },
-              [](Long x) { return Derivatives{std::expm1(x), std::exp(x), std::exp(x)}; }, {-3, -1e-6, 0, 1e-6, 2});
-  check_unary("exp2", [](const auto& x) { return exp2(x); },
-              [](Long x) {
-                const Long l = std::numbers::ln2_v<Long>;
-                return Derivatives{std::exp2(x), l * std::exp2(x), l * l * std::exp2(x)};
-              },
-              {-2, 0, 1.5});
-  check_unary("log", [](const auto& x) { return log(x); }, [](Long x) { return Derivatives{std::log(x), 1 / x, -1 / (x * x)}; },
-              {0.25, 1, 7});
-  check_unary("log1p", [](const auto& x) { return log1p(x); },
-              [](Long x) { return Derivatives{std::log1p(x), 1 / (1 + x), -1 / ((1 + x) * (1 + x))}; }, {-0.5, 1e-6, 0, 3});
-  check_unary("log2", [](const auto& x) { return log2(x); },
-              [](Long x) {
-                const Long l = std::numbers::log2e_v<Long>;
-                return Derivatives{std::log2(x), l / x, -l / (x * x)};
-              },
-              {0.25, 3});
-  check_unary("log10", [](const auto& x) { return log10(x); },
-              [](Long x) {
-                const Long l = std::numbers::log10e_v<Long>;
-                return Derivatives{std::log10(x), l / x, -l / (x * x)};
-              },
-              {0.25, 3});
+  check_unary(
+      "exp", [](const auto& x) { return exp(x); },
+      [](Long x) {
+        return Derivatives{std::exp(x), std::exp(x), std::exp(x)};
+      },
+      {-3, -0.5, 0, 0.7, 4});
+  check_unary(
+      "expm1", [](const auto& x) { return expm1(x); },
+      [](Long x) {
+        return Derivatives{std::expm1(x), std::exp(x), std::exp(x)};
+      },
+      {-3, -1e-6, 0, 1e-6, 2});
+  check_unary(
+      "exp2", [](const auto& x) { return exp2(x); },
+      [](Long x) {
+        const Long l = std::numbers::ln2_v<Long>;
+        return Derivatives{std::exp2(x), l * std::exp2(x), l * l * std::exp2(x)};
+      },
+      {-2, 0, 1.5});
+  check_unary(
+      "log", [](const auto& x) { return log(x); },
+      [](Long x) {
+        return Derivatives{std::log(x), 1 / x, -1 / (x * x)};
+      },
+      {0.25, 1, 7});
+  check_unary(
+      "log1p", [](const auto& x) { return log1p(x); },
+      [](Long x) {
+        return Derivatives{std::log1p(x), 1 / (1 + x), -1 / ((1 + x) * (1 + x))};
+      },
+      {-0.5, 1e-6, 0, 3});
+  check_unary(
+      "log2", [](const auto& x) { return log2(x); },
+      [](Long x) {
+        const Long l = std::numbers::log2e_v<Long>;
+        return Derivatives{std::log2(x), l / x, -l / (x * x)};
+      },
+      {0.25, 3});
+  check_unary(
+      "log10", [](const auto& x) { return log10(x); },
+      [](Long x) {
+        const Long l = std::numbers::log10e_v<Long>;
+        return Derivatives{std::log10(x), l / x, -l / (x * x)};
+      },
+      {0.25, 3});
 }
 
-TEST_CASE("functions: trigonometric and hyperbolic functions have their closed derivatives in every mode", "[autodiff]") {
+TEST_CASE("functions: trigonometric and hyperbolic functions have their closed derivatives in every mode",
+          "[autodiff]") {
   const std::vector<double> points{-1.2, -0.1, 0, 0.3, 1.4};
-  check_unary("sin", [](const auto& x) { return sin(x); },
-              [](Long x) { return Derivatives{std::sin(x), std::cos(x), -std::sin(x)}; }, points);
-  check_unary("cos", [](const auto& x) { return cos(x); },
-              [](Long x) { return Derivatives{std::cos(x), -std::sin(x), -std::cos(x)}; }, points);
-  check_unary("tan", [](const auto& x) { return tan(x); },
-              [](Long x) {
-                const Long c = std::cos(x);
-                return Derivatives{std::tan(x), 1 / (c * c), 2 * std::tan(x) / (c * c)};
-              },
-              {-1, 0, 0.5});
+  check_unary(
+      "sin", [](const auto& x) { return sin(x); },
+      [](Long x) {
+        return Derivatives{std::sin(x), std::cos(x), -std::sin(x)};
+      },
+      points);
+  check_unary(
+      "cos", [](const auto& x) { return cos(x); },
+      [](Long x) {
+        return Derivatives{std::cos(x), -std::sin(x), -std::cos(x)};
+      },
+      points);
+  check_unary(
+      "tan", [](const auto& x) { return tan(x); },
+      [](Long x) {
+        const Long c = std::cos(x);
+        return Derivatives{std::tan(x), 1 / (c * c), 2 * std::tan(x) / (c * c)};
+      },
+      {-1, 0, 0.5});
   const std::vector<double> inside{-0.75, 0, 0.5};
-  check_unary("asin", [](const auto& x) { return asin(x); },
-              [](Long x) { return Derivatives{std::asin(x), 1 / std::sqrt(1 - x * x), x / std::pow(1 - x * x, 1.5L)}; }, inside);
-  check_unary("acos", [](const auto& x) { return acos(x); },
-              [](Long x) { return Derivatives{std::acos(x), -1 / std::sqrt(1 - x * x), -x / std::pow(1 - x * x, 1.5L)}; },
-              inside);
-  check_unary("atan", [](const auto& x) { return atan(x); },
-              [](Long x) { return Derivatives{std::atan(x), 1 / (1 + x * x), -2 * x / std::pow(1 + x * x, 2.0L)}; }, points);
-  check_unary("sinh", [](const auto& x) { return sinh(x); },
-              [](Long x) { return Derivatives{std::sinh(x), std::cosh(x), std::sinh(x)}; }, points);
-  check_unary("cosh", [](const auto& x) { return cosh(x); },
-              [](Long x) { return Derivatives{std::cosh(x), std::sinh(x), std::cosh(x)}; }, points);
-  check_unary("tanh", [](const auto& x) { return tanh(x); },
-              [](Long x) {
-                const Long c = std::cosh(x);
-                return Derivatives{std::tanh(x), 1 / (c * c), -2 * std::tanh(x) / (c * c)};
-              },
-              points);
-  check_unary("asinh", [](const auto& x) { return asinh(x); },
-              [](Long x) { return Derivatives{std::asinh(x), 1 / std::sqrt(1 + x * x), -x / std::pow(1 + x * x, 1.5L)}; },
-              points);
-  check_unary("acosh", [](const auto& x) { return acosh(x); },
-              [](Long x) { return Derivatives{std::acosh(x), 1 / std::sqrt(x * x - 1), -x / std::pow(x * x - 1, 1.5L)}; },
-              {1.5, 4});
-  check_unary("atanh", [](const auto& x) { return atanh(x); },
-              [](Long x) { return Derivatives{std::atanh(x), 1 / (1 - x * x), 2 * x / std::pow(1 - x * x, 2.0L)}; }, inside);
+  check_unary(
+      "asin", [](const auto& x) { return asin(x); },
+      [](Long x) {
+        return Derivatives{std::asin(x), 1 / std::sqrt(1 - x * x), x / std::pow(1 - x * x, 1.5L)};
+      },
+      inside);
+  check_unary(
+      "acos", [](const auto& x) { return acos(x); },
+      [](Long x) {
+        return Derivatives{std::acos(x), -1 / std::sqrt(1 - x * x), -x / std::pow(1 - x * x, 1.5L)};
+      },
+      inside);
+  check_unary(
+      "atan", [](const auto& x) { return atan(x); },
+      [](Long x) {
+        return Derivatives{std::atan(x), 1 / (1 + x * x), -2 * x / std::pow(1 + x * x, 2.0L)};
+      },
+      points);
+  check_unary(
+      "sinh", [](const auto& x) { return sinh(x); },
+      [](Long x) {
+        return Derivatives{std::sinh(x), std::cosh(x), std::sinh(x)};
+      },
+      points);
+  check_unary(
+      "cosh", [](const auto& x) { return cosh(x); },
+      [](Long x) {
+        return Derivatives{std::cosh(x), std::sinh(x), std::cosh(x)};
+      },
+      points);
+  check_unary(
+      "tanh", [](const auto& x) { return tanh(x); },
+      [](Long x) {
+        const Long c = std::cosh(x);
+        return Derivatives{std::tanh(x), 1 / (c * c), -2 * std::tanh(x) / (c * c)};
+      },
+      points);
+  check_unary(
+      "asinh", [](const auto& x) { return asinh(x); },
+      [](Long x) {
+        return Derivatives{std::asinh(x), 1 / std::sqrt(1 + x * x), -x / std::pow(1 + x * x, 1.5L)};
+      },
+      points);
+  check_unary(
+      "acosh", [](const auto& x) { return acosh(x); },
+      [](Long x) {
+        return Derivatives{std::acosh(x), 1 / std::sqrt(x * x - 1), -x / std::pow(x * x - 1, 1.5L)};
+      },
+      {1.5, 4});
+  check_unary(
+      "atanh", [](const auto& x) { return atanh(x); },
+      [](Long x) {
+        return Derivatives{std::atanh(x), 1 / (1 - x * x), 2 * x / std::pow(1 - x * x, 2.0L)};
+      },
+      inside);
 }
 
-TEST_CASE("functions: roots, squares and the error function have their closed derivatives in every mode", "[autodiff]") {
-  check_unary("sqrt", [](const auto& x) { return sqrt(x); },
-              [](Long x) { return Derivatives{std::sqrt(x), 0.5L / std::sqrt(x), -0.25L / std::pow(x, 1.5L)}; }, {0.25, 2, 9});
-  check_unary("cbrt", [](const auto& x) { return cbrt(x); },
-              [](Long x) {
-                const Long c = std::cbrt(x);
-                return Derivatives{c, 1 / (3 * c * c), -2 / (9 * c * c * c * c * c)};
-              },
-              {-2, 0.5, 8});
-  check_unary("sqr", [](const auto& x) { return sqr(x); }, [](Long x) { return Derivatives{x * x, 2 * x, 2}; }, {-2, 0, 3});
-  check_unary("abs", [](const auto& x) { return abs(x); },
-              [](Long x) { return Derivatives{std::abs(x), x > 0 ? 1.0L : -1.0L, 0}; }, {-2, 3});
-  check_unary("erf", [](const auto& x) { return erf(x); },
-              [](Long x) {
-                const Long d = 2 / std::sqrt(std::numbers::pi_v<Long>) * std::exp(-x * x);
-                return Derivatives{std::erf(x), d, -2 * x * d};
-              },
-              {-1, 0, 0.5, 2});
-  check_unary("1 / x", [](const auto& x) { return 1 / x; },
-              [](Long x) { return Derivatives{1 / x, -1 / (x * x), 2 / (x * x * x)}; }, {-2, 0.5});
+TEST_CASE("functions: roots, squares and the error function have their closed derivatives in every mode",
+          "[autodiff]") {
+  check_unary(
+      "sqrt", [](const auto& x) { return sqrt(x); },
+      [](Long x) {
+        return Derivatives{std::sqrt(x), 0.5L / std::sqrt(x), -0.25L / std::pow(x, 1.5L)};
+      },
+      {0.25, 2, 9});
+  check_unary(
+      "cbrt", [](const auto& x) { return cbrt(x); },
+      [](Long x) {
+        const Long c = std::cbrt(x);
+        return Derivatives{c, 1 / (3 * c * c), -2 / (9 * c * c * c * c * c)};
+      },
+      {-2, 0.5, 8});
+  check_unary(
+      "sqr", [](const auto& x) { return sqr(x); },
+      [](Long x) {
+        return Derivatives{x * x, 2 * x, 2};
+      },
+      {-2, 0, 3});
+  check_unary(
+      "abs", [](const auto& x) { return abs(x); },
+      [](Long x) {
+        return Derivatives{std::abs(x), x > 0 ? 1.0L : -1.0L, 0};
+      },
+      {-2, 3});
+  check_unary(
+      "erf", [](const auto& x) { return erf(x); },
+      [](Long x) {
+        const Long d = 2 / std::sqrt(std::numbers::pi_v<Long>) * std::exp(-x * x);
+        return Derivatives{std::erf(x), d, -2 * x * d};
+      },
+      {-1, 0, 0.5, 2});
+  check_unary(
+      "1 / x", [](const auto& x) { return 1 / x; },
+      [](Long x) {
+        return Derivatives{1 / x, -1 / (x * x), 2 / (x * x * x)};
+      },
+      {-2, 0.5});
 }
 
 TEST_CASE("functions: softplus, sigmoid and silu are exact in the tails", "[autodiff]") {
   const std::vector<double> points{-80, -30, -2, -1e-3, 0, 0.5, 3, 30, 80};
   const auto sigma = [](Long x) { return 1 / (1 + std::exp(-x)); };
-  check_unary("sigmoid", [](const auto& x) { return sigmoid(x); },
-              [&](Long x) {
-                const Long s = sigma(x), r = sigma(-x);
-                return Derivatives{s, s * r, s * r * (r - s)};
-              },
-              points);
-  check_unary("softplus", [](const auto& x) { return softplus(x); },
-              [&](Long x) { return Derivatives{x > 0 ? x + std::log1p(std::exp(-x)) : std::log1p(std::exp(x)), sigma(x), sigma(x) * sigma(-x)}; },
-              points);
-  check_unary("silu", [](const auto& x) { return silu(x); },
-              [&](Long x) {
-                const Long s = sigma(x), r = sigma(-x);
-                return Derivatives{x * s, s + x * s * r, s * r * (2 + x * (r - s))};
-              },
-              points);
+  check_unary(
+      "sigmoid", [](const auto& x) { return sigmoid(x); },
+      [&](Long x) {
+        const Long s = sigma(x), r = sigma(-x);
+        return Derivatives{s, s * r, s * r * (r - s)};
+      },
+      points);
+  check_unary(
+      "softplus", [](const auto& x) { return softplus(x); },
+      [&](Long x) {
+        return Derivatives{x > 0 ? x + std::log1p(std::exp(-x)) : std::log1p(std::exp(x)), sigma(x),
+                           sigma(x) * sigma(-x)};
+      },
+      points);
+  check_unary(
+      "silu", [](const auto& x) { return silu(x); },
+      [&](Long x) {
+        const Long s = sigma(x), r = sigma(-x);
+        return Derivatives{x * s, s + x * s * r, s * r * (2 + x * (r - s))};
+      },
+      points);
 
   for (const double x : {-800.0, 800.0}) {
     INFO(x);
@@ -240,7 +325,8 @@ void check_binary(const Function& function, double x, double y, const Derivative
   close(jet.h[2], expected.fyy);
 
   using D = Dual<Dual<double, 2>, 2>;
-  const D nested = function(D::variable(Dual<double, 2>::variable(x, 0), 0), D::variable(Dual<double, 2>::variable(y, 1), 1));
+  const D nested =
+      function(D::variable(Dual<double, 2>::variable(x, 0), 0), D::variable(Dual<double, 2>::variable(y, 1), 1));
   close(nested.g[0].g[0], expected.fxx);
   close(nested.g[0].g[1], expected.fxy);
   close(nested.g[1].g[0], expected.fxy);
@@ -277,8 +363,7 @@ TEST_CASE("functions: pow in all active and passive combinations", "[autodiff]")
   for (const double x : {0.3, 1.0, 2.5})
     for (const double y : {-1.5, 0.0, 0.5, 1.0, 2.0, 3.25}) {
       const double f = std::pow(x, y), l = std::log(x);
-      check_binary(function, x, y,
-                   {f, y * f / x, f * l, y * (y - 1) * f / (x * x), f / x * (1 + y * l), f * l * l});
+      check_binary(function, x, y, {f, y * f / x, f * l, y * (y - 1) * f / (x * x), f / x * (1 + y * l), f * l * l});
     }
   const auto power = pow(Jet2<double, 1>::variable(-2, 0), 3);
   CHECK(power.f == -8);

@@ -36,7 +36,9 @@ struct Parameters {
   Eigen::MatrixX<T> w1, w2, b, dw1, dw2, db;
 
   Parameters()
-      : w1(random_matrix(4, 3, 1).cast<T>()), w2(random_matrix(4, 4, 2).cast<T>()), b(random_matrix(4, 1, 3).cast<T>()) {
+      : w1(random_matrix(4, 3, 1).cast<T>()),
+        w2(random_matrix(4, 4, 2).cast<T>()),
+        b(random_matrix(4, 1, 3).cast<T>()) {
     clear();
   }
   void clear() {
@@ -47,22 +49,22 @@ struct Parameters {
 };
 
 template <class T>
-typename MatrixTape<T>::Node parameter(MatrixTape<T>& tape, const Eigen::MatrixX<T>& value, Eigen::MatrixX<T>& gradient) {
+typename MatrixTape<T>::Node parameter(MatrixTape<T>& tape, const Eigen::MatrixX<T>& value,
+                                       Eigen::MatrixX<T>& gradient) {
   return tape.parameter(typename MatrixTape<T>::Value(value.data(), value.rows(), value.cols()),
                         typename MatrixTape<T>::Gradient(gradient.data(), gradient.rows(), gradient.cols()));
 }
 
-/// | tanh(w2 tanh(w1 x + b) + tanh(w1 x + b)) + w2 x' - target |^2 where b is shared; fused layers or one node an operation.
+/// | w2 z + y - target |^2 with y = tanh(w1 x + b), z = tanh(w2 y + b + y); fused layers or one node an operation.
 template <class T>
 typename MatrixTape<T>::Node network(MatrixTape<T>& tape, Parameters<T>& p, const Eigen::MatrixX<T>& x,
                                      const Eigen::MatrixX<T>& target, bool fused) {
   const auto w1 = parameter(tape, p.w1, p.dw1), w2 = parameter(tape, p.w2, p.dw2), b = parameter(tape, p.b, p.db);
   const auto in = tape.constant(x);
-  const auto first = fused ? tape.layer(w1, b, in, tanh_entries)
-                           : tape.apply(tape.add(tape.product(w1, in), b), tanh_entries);
-  const auto second =
-      fused ? tape.layer(w2, b, first, first, tanh_entries)
-            : tape.apply(tape.add(tape.add(tape.product(w2, first), b), first), tanh_entries);
+  const auto first =
+      fused ? tape.layer(w1, b, in, tanh_entries) : tape.apply(tape.add(tape.product(w1, in), b), tanh_entries);
+  const auto second = fused ? tape.layer(w2, b, first, first, tanh_entries)
+                            : tape.apply(tape.add(tape.add(tape.product(w2, first), b), first), tanh_entries);
   return tape.squared_error(tape.add(tape.product(w2, second), first), target);
 }
 

@@ -20,12 +20,24 @@ T program(std::uint32_t seed, const T& x, const T& y) {
     T& a = r[random() % 3];
     const T b = r[random() % 3];
     switch (random() % 6) {
-      case 0: a += b; break;
-      case 1: a = cos(a) * b - 1; break;
-      case 2: a = 2 / (2 + a * b * a * b); break;
-      case 3: a -= a * b / 4; break;
-      case 4: a = hypot(a, 1 + b); break;
-      default: a = exp(-sqr(a)) + 3 * b; break;
+      case 0:
+        a += b;
+        break;
+      case 1:
+        a = cos(a) * b - 1;
+        break;
+      case 2:
+        a = 2 / (2 + a * b * a * b);
+        break;
+      case 3:
+        a -= a * b / 4;
+        break;
+      case 4:
+        a = hypot(a, 1 + b);
+        break;
+      default:
+        a = exp(-sqr(a)) + 3 * b;
+        break;
     }
     a = a / (1 + sqr(a));
   }

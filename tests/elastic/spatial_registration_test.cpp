@@ -100,8 +100,8 @@ TEST_CASE("an ellipsoid, its sampled mesh and its network register alike, to wit
   };
   const double distance = std::sqrt(a.summary.energy_after);
   const double mesh_bound = difference(at_time(sampled, 0.0)), network_bound = difference(at_time(network, 0.0));
-  INFO("distances " << distance << ", " << std::sqrt(m.summary.energy_after) << ", " << std::sqrt(n.summary.energy_after)
-                    << "; bounds " << mesh_bound << ", " << network_bound);
+  INFO("distances " << distance << ", " << std::sqrt(m.summary.energy_after) << ", "
+                    << std::sqrt(n.summary.energy_after) << "; bounds " << mesh_bound << ", " << network_bound);
   CHECK(mesh_bound < 0.2 * distance);
   CHECK(network_bound < 0.5 * distance);
   CHECK(std::abs(std::sqrt(m.summary.energy_after) - distance) <= mesh_bound + 1e-3 * distance);

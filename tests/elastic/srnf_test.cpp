@@ -34,8 +34,10 @@ TEST_CASE("derivatives of the SRNF agree with central differences", "[elastic]")
   const ChartBatch c = charts_at(test::sphere_points());
   const SrnfJets q = srnf(jets(f, c));
   constexpr double h = 1e-5;
-  const Mat3X du = (srnf(f, std::cos(h) * c.s + std::sin(h) * c.e1) - srnf(f, std::cos(h) * c.s - std::sin(h) * c.e1)) / (2 * h);
-  const Mat3X dv = (srnf(f, std::cos(h) * c.s + std::sin(h) * c.e2) - srnf(f, std::cos(h) * c.s - std::sin(h) * c.e2)) / (2 * h);
+  const Mat3X du =
+      (srnf(f, std::cos(h) * c.s + std::sin(h) * c.e1) - srnf(f, std::cos(h) * c.s - std::sin(h) * c.e1)) / (2 * h);
+  const Mat3X dv =
+      (srnf(f, std::cos(h) * c.s + std::sin(h) * c.e2) - srnf(f, std::cos(h) * c.s - std::sin(h) * c.e2)) / (2 * h);
   CHECK((q.hu - du).cwiseAbs().maxCoeff() < 1e-7);
   CHECK((q.hv - dv).cwiseAbs().maxCoeff() < 1e-7);
 }

@@ -10,7 +10,8 @@ TEST_CASE("warps keep their ends, increase, and have the slope of their differen
   CHECK(warp(1) == 1);
   CHECK(warp.min_slope() > 0);
   constexpr double h = 1e-6;
-  for (const double t : {0.1, 0.333, 0.5, 0.871}) CHECK(warp.slope(t) == Approx((warp(t + h) - warp(t - h)) / (2 * h)).epsilon(1e-5));
+  for (const double t : {0.1, 0.333, 0.5, 0.871})
+    CHECK(warp.slope(t) == Approx((warp(t + h) - warp(t - h)) / (2 * h)).epsilon(1e-5));
 }
 
 TEST_CASE("a constant log-slope is the identity; a linear one has the closed form", "[elastic]") {
@@ -43,7 +44,8 @@ TEST_CASE("steep data are interpolated monotonically", "[elastic]") {
   }
 }
 
-TEST_CASE("the mean of a warp and its reversal in the log-slope is near the identity, of equal warps the warp", "[elastic]") {
+TEST_CASE("the mean of a warp and its reversal in the log-slope is near the identity, of equal warps the warp",
+          "[elastic]") {
   const TimeWarp warp = random_warp(2, 0.6);
   CHECK(distance(karcher_mean(std::vector<TimeWarp>{warp, warp, warp}), warp) < 1e-6);
   const Eigen::VectorXd u = Eigen::VectorXd::LinSpaced(401, -0.3, 0.3);

@@ -121,8 +121,8 @@ TEST_CASE("rotations take the short way round", "[io]") {
   auto file = test::sliding_triangle();
   const int times = file.numbers<float>("SCALAR", {0, 1});
   const float h = -0.70710678f;  // a quarter turn about z, written as its negative
-  file.animations = test::one_track("turn", times, file.numbers<float>("VEC4", {0, 0, 0, 1, 0, 0, h, h}), "LINEAR",
-                                    "rotation");
+  file.animations =
+      test::one_track("turn", times, file.numbers<float>("VEC4", {0, 0, 0, 1, 0, 0, h, h}), "LINEAR", "rotation");
   CHECK(distance(read(file, 3).frames[1], 1, Vec3d(std::sqrt(0.5), std::sqrt(0.5), 0)) < 1e-6);
 }
 
@@ -151,8 +151,10 @@ TEST_CASE("strips and fans are wound like their first triangle", "[io]") {
   };
   file.meshes = R"({"primitives":[)" + primitive(mode) + "," + primitive(1) + "]}";  // lines are passed over
   Faces expected(3, 3);
-  if (mode == 5) expected << 0, 1, 2, 1, 3, 3, 2, 2, 4;
-  else expected << 0, 0, 0, 1, 2, 3, 2, 3, 4;
+  if (mode == 5)
+    expected << 0, 1, 2, 1, 3, 3, 2, 2, 4;
+  else
+    expected << 0, 0, 0, 1, 2, 3, 2, 3, 4;
   CHECK(read(file, 2).faces == expected);
 }
 
@@ -247,8 +249,8 @@ TEST_CASE("numbers that make no mesh are refused", "[io]") {
   still.animations = test::one_track("pose", key, still.numbers<float>("VEC3", {1, 1, 1}), "LINEAR", "translation");
   CHECK(contains(complaint_about(still.glb()), "clip 'pose' holds a single pose"));
   const int back = still.numbers<float>("SCALAR", {1, 0});
-  still.animations = test::one_track("back", back, still.numbers<float>("VEC3", {1, 1, 1, 2, 2, 2}), "LINEAR",
-                                     "translation");
+  still.animations =
+      test::one_track("back", back, still.numbers<float>("VEC3", {1, 1, 1, 2, 2, 2}), "LINEAR", "translation");
   CHECK(contains(complaint_about(still.glb()), "back in time"));
 
   const auto arm = test::two_joints();

@@ -7,7 +7,8 @@
 
 using namespace dsns;
 
-TEMPLATE_TEST_CASE("activations: columns equal the scalar path with first and second derivatives", "[nn]", float, double) {
+TEMPLATE_TEST_CASE("activations: columns equal the scalar path with first and second derivatives", "[nn]", float,
+                   double) {
   using T = TestType;
   const auto activation = GENERATE(Activation::softplus, Activation::silu, Activation::tanh);
   const T tolerance = 8 * std::numeric_limits<T>::epsilon();

@@ -27,12 +27,15 @@ TEST_CASE("encoding: the paper's 80 features", "[nn]") {
 TEST_CASE("encoding: harmonics of degree 1 hold the point itself and time its frequencies", "[nn]") {
   SurfaceEncoding e;
   e.harmonic_degree = 3;
+  e.harmonic_decay = 1;
   e.time_frequencies = 2;
   CHECK(e.features() == 15 + 4);
   const Vec3d s = Vec3d(2, -1, 2) / 3;
   const Eigen::VectorXd space = e.space(s);
   CHECK(std::abs(space.head(3).norm() - std::sqrt(3.0)) < 1e-14);
   CHECK(space[1] == Approx(std::sqrt(3.0) * s.z()));
+  for (int l = 1; l <= 3; ++l)  // the addition theorem: the squares of one degree sum to 2 l + 1, times the decay
+    CHECK(space.segment(l * l - 1, 2 * l + 1).squaredNorm() == Approx((2 * l + 1) / double(l * l)));
   const Eigen::VectorXd time = e.time(0.25);
   CHECK(time[0] == Approx(std::sqrt(0.5)));
   CHECK(time[2] == Approx(1));

@@ -73,7 +73,8 @@ TEST_CASE("mlp: columns carry the jets of the scalar path", "[nn]") {
   const Mlp<double> net(small_shape(activation), 3);
   const Index n = 7;
   const Eigen::MatrixXd x = inputs(5, 6 * n);
-  const Eigen::MatrixXd jets = net.columns(x, JetOrder::second), tangents = net.columns(x.leftCols(2 * n), JetOrder::tangent),
+  const Eigen::MatrixXd jets = net.columns(x, JetOrder::second),
+                        tangents = net.columns(x.leftCols(2 * n), JetOrder::tangent),
                         values = net.columns(x.leftCols(n), JetOrder::value);
   double worst = 0;
   for (Index j = 0; j < n; ++j) {

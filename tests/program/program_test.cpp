@@ -77,8 +77,9 @@ TEST_CASE("unusable input ends with status 1 and one sentence", "[program]") {
 
 TEST_CASE("wrong usage ends with status 2, help with 0", "[program]") {
   const test::TemporaryFolder folder;
-  for (const std::string usage : {"", "frobnicate", "fit", "register one.glb", "fit a.glb --frames 1", "fit a.glb --threads x",
-                                  "mean a.glb b.glb --surface cubist", "inspect a.glb --no-such-option"}) {
+  for (const std::string usage :
+       {"", "frobnicate", "fit", "register one.glb", "fit a.glb --frames 1", "fit a.glb --threads x",
+        "mean a.glb b.glb --surface cubist", "inspect a.glb --no-such-option"}) {
     INFO(usage);
     const Run r = run(folder.path(), usage);
     CHECK(r.status == 2);
@@ -92,8 +93,8 @@ TEST_CASE("wrong usage ends with status 2, help with 0", "[program]") {
 TEST_CASE("inspect reports a torus without refusing it, and writes JSON", "[program]") {
   const test::TemporaryFolder folder;
   write_gltf(folder.path() / "torus.glb", growing(test::torus(20, 10)));
-  const Run r = run(folder.path(), "inspect " + quoted(folder.path() / "torus.glb") + " --json " +
-                                       quoted(folder.path() / "t.json"));
+  const Run r = run(folder.path(),
+                    "inspect " + quoted(folder.path() / "torus.glb") + " --json " + quoted(folder.path() / "t.json"));
   CHECK(r.status == 0);
   std::ostringstream json;
   json << std::ifstream(folder.path() / "t.json").rdbuf();
@@ -110,8 +111,9 @@ TEST_CASE("two bodies go through registration, and the result can be read again"
   other.pace = 0.3;
   write_gltf(folder.path() / "a.glb", sequence_of(body, icosphere(2), 6));
   write_gltf(folder.path() / "b.glb", sequence_of(other, latitude_longitude_sphere(9, 14), 6));
-  const Run r = run(folder.path(), "geodesic " + quoted(folder.path() / "a.glb") + " " + quoted(folder.path() / "b.glb") +
-                                       " --frames 6 --points 3 -o " + quoted(folder.path() / "way.glb"));
+  const Run r =
+      run(folder.path(), "geodesic " + quoted(folder.path() / "a.glb") + " " + quoted(folder.path() / "b.glb") +
+                             " --frames 6 --points 3 -o " + quoted(folder.path() / "way.glb"));
   INFO(r.err);
   REQUIRE(r.status == 0);
   CHECK(r.out.find("distance") != std::string::npos);

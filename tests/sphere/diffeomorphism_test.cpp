@@ -61,7 +61,8 @@ TEST_CASE("random diffeomorphisms have the size asked for and repeat", "[sphere]
   const SphereQuadrature q = fibonacci_sphere(1000);
   const Mat3X y = random_diffeomorphism(5, 3, size)(q.points);
   double square = 0;
-  for (Index i = 0; i < y.cols(); ++i) square += std::pow(angle_between(y.col(i), q.points.col(i)), 2) / double(y.cols());
+  for (Index i = 0; i < y.cols(); ++i)
+    square += std::pow(angle_between(y.col(i), q.points.col(i)), 2) / double(y.cols());
   CHECK(std::sqrt(square) < size);
   CHECK(std::sqrt(square) > 0.3 * size);
   CHECK(random_diffeomorphism(5, 3, size)(q.points) == y);

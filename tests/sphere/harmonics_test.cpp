@@ -41,7 +41,8 @@ TEST_CASE("harmonic derivatives agree with second-order jets, also at the poles"
     for (Index k = 0; k < y.size(); ++k) {
       const Vec3d g(h.dx(i, k), h.dy(i, k), h.dz(i, k));
       Mat3 H;
-      H << h.dxx(i, k), h.dxy(i, k), h.dxz(i, k), h.dxy(i, k), h.dyy(i, k), h.dyz(i, k), h.dxz(i, k), h.dyz(i, k), h.dzz(i, k);
+      H << h.dxx(i, k), h.dxy(i, k), h.dxz(i, k), h.dxy(i, k), h.dyy(i, k), h.dyz(i, k), h.dxz(i, k), h.dyz(i, k),
+          h.dzz(i, k);
       value = std::max(value, std::abs(h.y(i, k) - y[k].f));
       first = std::max({first, std::abs(g.dot(a) - y[k].g[0]), std::abs(g.dot(b) - y[k].g[1])});
       second = std::max({second, std::abs(a.dot(H * a) - g.dot(s) - y[k].h[0]), std::abs(a.dot(H * b) - y[k].h[1]),

@@ -11,8 +11,9 @@ namespace {
 LimbedBody some_body(double size, double pace) {
   LimbedBody body;
   body.axes = 0.3 * size * Vec3d(1, 0.8, 0.6);
-  body.limbs = {{Vec3d(1, 0.3, 0.2).normalized(), 6, 0.3 * size * Vec3d(0.7, 0.2, 0.1), 0.3 * size * Vec3d(0, 0.3, 0.1)},
-                {Vec3d(-1, 0.5, 0.4).normalized(), 5, 0.3 * size * Vec3d(-0.5, 0.3, 0.3), 0.3 * size * Vec3d(0, 0.2, 0.3), 0.3}};
+  body.limbs = {
+      {Vec3d(1, 0.3, 0.2).normalized(), 6, 0.3 * size * Vec3d(0.7, 0.2, 0.1), 0.3 * size * Vec3d(0, 0.3, 0.1)},
+      {Vec3d(-1, 0.5, 0.4).normalized(), 5, 0.3 * size * Vec3d(-0.5, 0.3, 0.3), 0.3 * size * Vec3d(0, 0.2, 0.3), 0.3}};
   body.pace = pace;
   return body;
 }
@@ -79,7 +80,8 @@ TEST_CASE("samples, components and curves fit together", "[stats]") {
   const TimeGrid grid = time_grid();
   const Eigen::MatrixXd points = integrate_srvf(curve.start(), warped_srvf(curve, {}, grid), grid);
   CHECK((pca.reconstruct(points.rightCols<1>()) - positions(body, sphere.vertices, 1)).cwiseAbs().maxCoeff() < 1e-4);
-  CHECK((pca.reconstruct(interpolate(points, 0.5)) - positions(body, sphere.vertices, 0.5)).cwiseAbs().maxCoeff() < 1e-4);
+  CHECK((pca.reconstruct(interpolate(points, 0.5)) - positions(body, sphere.vertices, 0.5)).cwiseAbs().maxCoeff() <
+        1e-4);
 }
 
 TEST_CASE("a mean of nothing is refused", "[stats]") {

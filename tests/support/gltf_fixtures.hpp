@@ -16,8 +16,7 @@ inline std::string base64(const std::string& bytes) {
     std::uint32_t group = 0;
     for (std::size_t k = 0; k < 3; ++k)
       group = group << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63u];
+    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63u];
   }
   return text;
 }
@@ -75,9 +74,8 @@ class GltfFixture {
     };
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}])" + list("nodes", nodes) +
            list("meshes", meshes) + list("skins", skins) + list("animations", animations) +
-           list("accessors", accessors_) + list("bufferViews", views_) +
-           R"(,"buffers":[{"byteLength":)" + std::to_string(bytes_.size()) +
-           (uri.empty() ? "" : R"(,"uri":")" + uri + '"') + "}]" + more + "}";
+           list("accessors", accessors_) + list("bufferViews", views_) + R"(,"buffers":[{"byteLength":)" +
+           std::to_string(bytes_.size()) + (uri.empty() ? "" : R"(,"uri":")" + uri + '"') + "}]" + more + "}";
   }
 
   std::string glb() const { return glb_of(json()); }
@@ -133,13 +131,13 @@ inline GltfFixture two_joints() {
   GltfFixture file;
   const int points = file.numbers<float>("VEC3", {0, 0, 0, 2, 0, 0, 1, 1, 0});
   const int joints0 = file.numbers<std::uint8_t>("VEC4", {0, 0, 0, 0, 1, 0, 0, 0, 0, 9, 0, 0});
-  const int weights0 = file.numbers<std::uint8_t>("VEC4", {255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0},
-                                                  R"("normalized":true)");
+  const int weights0 =
+      file.numbers<std::uint8_t>("VEC4", {255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0}, R"("normalized":true)");
   const int joints1 = file.numbers<std::uint16_t>("VEC4", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1});
-  const int weights1 = file.numbers<std::uint16_t>("VEC4", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 65535},
-                                                   R"("normalized":true)");
-  const int binds = file.numbers<float>("MAT4", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,
-                                                 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1});
+  const int weights1 =
+      file.numbers<std::uint16_t>("VEC4", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 65535}, R"("normalized":true)");
+  const int binds = file.numbers<float>(
+      "MAT4", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1});
   const int times = file.numbers<float>("SCALAR", {0.5f, 2.5f});
   const float h = 0.70710678f;
   const int turns = file.numbers<float>("VEC4", {0, 0, 0, 1, 0, 0, h, h});

@@ -24,8 +24,8 @@ struct Dual {
   Dual() = default;
   /// A constant.
   template <class S>
-    requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>)
-  Dual(const S& s) : f(static_cast<T>(s)) {
+  requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) Dual(const S& s)
+      : f(static_cast<T>(s)) {
     g.fill(T(0));
   }
   Dual(const T& f_, const std::array<T, std::size_t(N)>& g_) : f(f_), g(g_) {}

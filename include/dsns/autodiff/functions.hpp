@@ -1,11 +1,10 @@
 #pragma once
 /// Elementary functions of every differentiable scalar, each written once: value, derivative, and second derivative on
-/// demand, joined by `chain`. They are found by argument-dependent lookup, so generic code says `using std::sin; sin(x)`.
+/// demand, joined by `chain`. They are found by argument-dependent lookup: generic code says `using std::sin; sin(x)`.
 ///
-/// Where a function has no derivative: abs(0), hypot(0, 0) and atan2(0, 0) have derivative 0; sqrt(0) and cbrt(0) have an
-/// infinite one (use hypot for lengths); min and max take their first argument in a tie, as in the standard library.
-/// pow(0, 0) = 1 with derivative 0 in both arguments; pow(x < 0, y) has derivative NaN in a y that is not constant.
+/// Where there is no derivative: that of abs is 0 at 0, those of sqrt and cbrt are infinite (use hypot for lengths).
 /// accuracy a few ulp of closed forms, second derivatives and nested scalars included [autodiff/functions_test]
+#include <dsns/autodiff/binary_functions.hpp>
 #include <dsns/autodiff/scalar.hpp>
 
 #include <cmath>
@@ -37,38 +36,6 @@ T silu(T x) {
   return x * sigmoid(x);
 }
 
-namespace detail {
-
-/// Whether x is a constant: every derivative of it, at every level, is zero.
-template <class X>
-bool inert(const X& x) {
-  if constexpr (Differentiable<X>) {
-    return derivatives_vanish(x);
-  } else {
-    return true;
-  }
-}
-
-template <class T, class P>
-T power(const T& x, const P& p) {
-  using std::pow;
-  return pow(x, p);
-}
-
-/// p x^(p - 1), which is 0 for p = 0 also at x = 0.
-template <class T, class P>
-T power_derivative(const T& x, const P& p) {
-  return value(x) == 0 && value(p) == 0 ? T(0) : T(p * power(x, P(p - 1)));
-}
-
-/// p (p - 1) x^(p - 2), which is 0 for p = 0 and p = 1 also at x = 0.
-template <class T, class P>
-T power_second(const T& x, const P& p) {
-  return value(x) == 0 && (value(p) == 0 || value(p) == 1) ? T(0) : T(p * (p - 1) * power(x, P(p - 2)));
-}
-
-}  // namespace detail
-
 template <Differentiable X>
 X sqr(const X& x) {
   return x * x;
@@ -83,31 +50,6 @@ X abs(const X& x) {
 template <Differentiable X>
 X fabs(const X& x) {
   return abs(x);
-}
-
-template <Differentiable X>
-X min(const X& x, const X& y) {
-  return y < x ? y : x;
-}
-template <Differentiable X>
-X max(const X& x, const X& y) {
-  return x < y ? y : x;
-}
-template <Differentiable X, PassiveFor<X> S>
-X min(const X& x, const S& s) {
-  return s < x ? X(s) : x;
-}
-template <Differentiable X, PassiveFor<X> S>
-X min(const S& s, const X& x) {
-  return x < s ? x : X(s);
-}
-template <Differentiable X, PassiveFor<X> S>
-X max(const X& x, const S& s) {
-  return x < s ? X(s) : x;
-}
-template <Differentiable X, PassiveFor<X> S>
-X max(const S& s, const X& x) {
-  return s < x ? x : X(s);
 }
 
 template <Differentiable X>
@@ -308,79 +250,6 @@ X silu(const X& x) {
   const auto s = sigmoid(x.f);
   const auto rest = sigmoid(-x.f);
   return chain(x, x.f * s, s + x.f * s * rest, [&] { return s * rest * (2 + x.f * (rest - s)); });
-}
-
-template <Differentiable X>
-X hypot(const X& x, const X& y) {
-  using std::hypot;
-  using T = typename X::Inner;
-  const auto f = hypot(x.f, y.f);
-  if (f == 0) return chain(x, y, f, T(0), T(0), [] { return detail::Second<T>{T(0), T(0), T(0)}; });
-  const T fx = x.f / f, fy = y.f / f;
-  return chain(x, y, f, fx, fy, [&] { return detail::Second<T>{fy * fy / f, -fx * fy / f, fx * fx / f}; });
-}
-
-template <Differentiable X>
-X atan2(const X& y, const X& x) {
-  using std::atan2, std::hypot;
-  using T = typename X::Inner;
-  const T r = hypot(x.f, y.f);
-  if (r == 0) return chain(y, x, T(atan2(y.f, x.f)), T(0), T(0), [] { return detail::Second<T>{T(0), T(0), T(0)}; });
-  const T c = x.f / r, s = y.f / r;
-  return chain(y, x, T(atan2(y.f, x.f)), T(c / r), T(-s / r), [&] {
-    const T mixed = 2 * c * s / (r * r);
-    return detail::Second<T>{-mixed, (s * s - c * c) / (r * r), mixed};
-  });
-}
-
-template <Differentiable X, PassiveFor<X> P>
-X pow(const X& x, const P& p) {
-  using T = typename X::Inner;
-  const auto& q = detail::constant<X>(p);
-  return chain(x, detail::power(x.f, q), detail::power_derivative(x.f, q),
-               [&]() -> T { return detail::power_second(x.f, q); });
-}
-
-template <Differentiable X, PassiveFor<X> P>
-X pow(const P& base, const X& y) {
-  using std::log;
-  using T = typename X::Inner;
-  const T b = detail::constant<X>(base);
-  const T f = detail::power(b, y.f);
-  const T l = value(b) == 0 && value(y) >= 0 ? T(0) : T(log(b));
-  return chain(y, f, T(f * l), [&]() -> T { return f * l * l; });
-}
-
-template <Differentiable X>
-X pow(const X& x, const X& y) {
-  using std::log;
-  using T = typename X::Inner;
-  if (detail::inert(y)) return pow(x, y.f);
-  const T f = detail::power(x.f, y.f);
-  const bool flat = value(x) == 0 && value(y) >= 0;
-  const T l = flat ? T(0) : T(log(x.f));
-  return chain(x, y, f, detail::power_derivative(x.f, y.f), T(f * l), [&] {
-    const T mixed = flat && value(y) > 1 ? T(0) : T(detail::power(x.f, T(y.f - 1)) * (1 + y.f * T(log(x.f))));
-    return detail::Second<T>{detail::power_second(x.f, y.f), mixed, f * l * l};
-  });
-}
-
-/// hypot and atan2 with one constant argument.
-template <Differentiable X, PassiveFor<X> S>
-X hypot(const X& x, const S& s) {
-  return hypot(x, X(s));
-}
-template <Differentiable X, PassiveFor<X> S>
-X hypot(const S& s, const X& x) {
-  return hypot(X(s), x);
-}
-template <Differentiable X, PassiveFor<X> S>
-X atan2(const X& y, const S& x) {
-  return atan2(y, X(x));
-}
-template <Differentiable X, PassiveFor<X> S>
-X atan2(const S& y, const X& x) {
-  return atan2(X(y), x);
 }
 
 }  // namespace dsns

@@ -4,9 +4,9 @@
 ///   const auto f = [](const auto& x, double a) { return a * x.squaredNorm(); };
 ///   const Eigen::VectorXd g = gradient(f, wrt(x), at(x, a));
 ///
-/// wrt names arguments by identity: the same object must stand in at. Derivatives come flat, in the order of wrt, matrices
-/// column by column. The callable sees Var in place of the differentiated arguments and the rest as it is; what it returns
-/// is evaluated while its arguments live, so lambdas may return `auto`.
+/// wrt names arguments by identity: the same object must stand in at. Derivatives come flat, in the order of wrt,
+/// matrices column by column. The callable sees Var in place of the differentiated arguments and the rest as it is;
+/// what it returns is evaluated while its arguments live, so lambdas may return `auto`.
 #include <dsns/autodiff/dual.hpp>
 #include <dsns/autodiff/eigen.hpp>
 #include <dsns/autodiff/tape.hpp>
@@ -50,7 +50,7 @@ struct argument {
   using Lifted = V;
 };
 template <class X>
-  requires std::is_base_of_v<Eigen::DenseBase<X>, X>
+requires std::is_base_of_v<Eigen::DenseBase<X>, X>
 struct argument<X> {
   using Scalar = typename X::Scalar;
   template <class V>
@@ -77,8 +77,8 @@ auto lift(const X& x) {
   }
 }
 
-/// An argument as the callable sees it: lifted where its type is that of a differentiated one, else as it is. (Identity is
-/// known only at run time: an unnamed argument of such a type becomes a constant V.)
+/// An argument as the callable sees it: lifted where its type is that of a differentiated one, else as it is. (Identity
+/// is known only at run time: an unnamed argument of such a type becomes a constant V.)
 template <class V, class X, class... W>
 decltype(auto) lift_if_named(const X& x, const Wrt<W...>&) {
   if constexpr ((std::is_same_v<X, W> || ...)) {
@@ -122,7 +122,8 @@ auto call_lifted(const F& f, const Wrt<W...>& wrt, const At<A...>& at, const Mak
     };
     [&]<std::size_t... i>(std::index_sequence<i...>) {
       (try_argument(std::get<i>(at.arguments), std::get<i>(lifted)), ...);
-    }(std::index_sequence_for<A...>{});
+    }
+    (std::index_sequence_for<A...>{});
     require(found, "wrt: an argument is not among those of at(...); name the same object in both");
   };
   std::apply([&](const auto&... w) { (place(w), ...); }, wrt.arguments);
@@ -144,9 +145,8 @@ auto value_and_gradient(const F& f, const Wrt<W...>& wrt, const At<A...>& at) {
   Tape<T> tape;
   const auto recording = tape.record();
   std::vector<Var<T>> variables;
-  const Var<T> y = detail::call_lifted<Var<T>>(f, wrt, at, [&](const T& x, Eigen::Index) {
-    return variables.emplace_back(tape.variable(x));
-  });
+  const Var<T> y = detail::call_lifted<Var<T>>(
+      f, wrt, at, [&](const T& x, Eigen::Index) { return variables.emplace_back(tape.variable(x)); });
   tape.backward(y);
   ValueAndGradient<T> result{y.f, Eigen::VectorX<T>(Eigen::Index(variables.size()))};
   for (std::size_t k = 0; k < variables.size(); ++k) result.gradient[Eigen::Index(k)] = tape.adjoint(variables[k]);
@@ -167,9 +167,8 @@ auto jacobian(const F& f, const Wrt<W...>& wrt, const At<A...>& at) {
   Tape<T> tape;
   const auto recording = tape.record();
   std::vector<Var<T>> variables;
-  const auto y = detail::call_lifted<Var<T>>(f, wrt, at, [&](const T& x, Eigen::Index) {
-    return variables.emplace_back(tape.variable(x));
-  });
+  const auto y = detail::call_lifted<Var<T>>(
+      f, wrt, at, [&](const T& x, Eigen::Index) { return variables.emplace_back(tape.variable(x)); });
   Eigen::MatrixX<T> J(y.size(), Eigen::Index(variables.size()));
   for (Eigen::Index i = 0; i < J.rows(); ++i) {
     tape.backward(Var<T>(y.reshaped()[i]));

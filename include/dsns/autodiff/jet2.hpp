@@ -25,12 +25,13 @@ struct Jet2 {
   Jet2() = default;
   /// A constant.
   template <class S>
-    requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>)
-  Jet2(const S& s) : f(static_cast<T>(s)) {
+  requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) Jet2(const S& s)
+      : f(static_cast<T>(s)) {
     g.fill(T(0));
     h.fill(T(0));
   }
-  Jet2(const T& f_, const std::array<T, std::size_t(N)>& g_, const std::array<T, std::size_t(packed)>& h_) : f(f_), g(g_), h(h_) {}
+  Jet2(const T& f_, const std::array<T, std::size_t(N)>& g_, const std::array<T, std::size_t(packed)>& h_)
+      : f(f_), g(g_), h(h_) {}
   /// The k-th independent variable.
   static Jet2 variable(const T& x0, int k) {
     Jet2 x(x0);
@@ -65,8 +66,7 @@ struct Jet2 {
     for (std::size_t i = 0, m = 0; i < N; ++i) {
       r.g[i] = wx * x.g[i] + wy * y.g[i];
       const T bend_x = s.xx * x.g[i] + s.xy * y.g[i], bend_y = s.xy * x.g[i] + s.yy * y.g[i];
-      for (std::size_t j = i; j < N; ++j, ++m)
-        r.h[m] = wx * x.h[m] + wy * y.h[m] + bend_x * x.g[j] + bend_y * y.g[j];
+      for (std::size_t j = i; j < N; ++j, ++m) r.h[m] = wx * x.h[m] + wy * y.h[m] + bend_x * x.g[j] + bend_y * y.g[j];
     }
     return r;
   }
@@ -92,8 +92,7 @@ struct Jet2 {
     r.f = a.f * b.f;
     for (std::size_t i = 0, m = 0; i < N; ++i) {
       r.g[i] = a.f * b.g[i] + b.f * a.g[i];
-      for (std::size_t j = i; j < N; ++j, ++m)
-        r.h[m] = a.f * b.h[m] + b.f * a.h[m] + a.g[i] * b.g[j] + a.g[j] * b.g[i];
+      for (std::size_t j = i; j < N; ++j, ++m) r.h[m] = a.f * b.h[m] + b.f * a.h[m] + a.g[i] * b.g[j] + a.g[j] * b.g[i];
     }
     return r;
   }

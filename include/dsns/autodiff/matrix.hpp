@@ -7,8 +7,8 @@
 ///   const auto y = tape.add(tape.product(tape.parameter(W, dW), x), tape.parameter(b, db));
 ///   tape.backward(tape.squared_error(y, targets));   // adds the derivatives to dW and db
 ///
-/// Parameters are views of the caller's memory. A tape keeps its memory from one recording to the next: a step of the same
-/// shapes as the last allocates nothing. T may be float, double, or a forward scalar. One tape serves one thread.
+/// Parameters are views of the caller's memory. A tape keeps its memory from one recording to the next: a step of the
+/// same shapes as the last allocates nothing. T may be float, double, or a forward scalar. One tape serves one thread.
 #include <dsns/autodiff/eigen.hpp>
 #include <dsns/core/errors.hpp>
 

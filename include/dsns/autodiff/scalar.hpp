@@ -1,6 +1,6 @@
 #pragma once
-/// What a differentiable scalar is: a value `f` of some inner type plus derivatives. Dual, Jet2 and Var are such scalars,
-/// and nest in one another; at the bottom lies an arithmetic type, the passive scalar.
+/// What a differentiable scalar is: a value `f` of some inner type plus derivatives. Dual, Jet2 and Var are such
+/// scalars, and nest in one another; at the bottom lies an arithmetic type, the passive scalar.
 #include <type_traits>
 
 namespace dsns {
@@ -44,7 +44,7 @@ using Passive = typename detail::passive_type<X>::type;
 
 /// S is constant with respect to X: a number, or a type that X is nested over.
 template <class S, class X>
-concept PassiveFor = Differentiable<X> && (std::is_arithmetic_v<S> || detail::is_passive_for<S, X>::value);
+concept PassiveFor = Differentiable<X> &&(std::is_arithmetic_v<S> || detail::is_passive_for<S, X>::value);
 
 /// The number at the bottom of x, all derivatives dropped.
 template <class X>

@@ -1,6 +1,6 @@
 #pragma once
-/// Reverse automatic differentiation: operations on Var are recorded on a Tape, one backward sweep gives the derivatives
-/// of one result in all variables. Needs nothing but the standard library. Var is a plain value: `auto` is safe.
+/// Reverse automatic differentiation: operations on Var are recorded on a Tape, one backward sweep gives the
+/// derivatives of one result in all variables. Needs no Eigen. Var is a plain value: `auto` is safe.
 ///
 ///   Tape<double> tape;
 ///   const auto recording = tape.record();            // active on this thread until `recording` ends
@@ -38,8 +38,8 @@ struct Var {
   Var() : f(T(0)) {}
   /// A constant.
   template <class S>
-    requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>)
-  Var(const S& s) : f(static_cast<T>(s)) {}
+  requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) Var(const S& s)
+      : f(static_cast<T>(s)) {}
 
   /// w(x) for a function with value w and derivative d at x.f.
   template <class Second>

@@ -10,7 +10,10 @@ class CurveGeodesic {
  public:
   /// The second curve is taken along `warp`, the result of register_temporally(first, second).
   CurveGeodesic(const Curve& first, const Curve& second, const TimeWarp& warp)
-      : grid_(time_grid()), start1_(first.start()), start2_(second.start()), q1_(warped_srvf(first, {}, grid_)),
+      : grid_(time_grid()),
+        start1_(first.start()),
+        start2_(second.start()),
+        q1_(warped_srvf(first, {}, grid_)),
         q2_(warped_srvf(second, warp, grid_)) {}
 
   /// sqrt(|a1(0) - a2(0)|^2 + |q1 - q2 * zeta|^2): the first term in squared units of a, the second in units of a.

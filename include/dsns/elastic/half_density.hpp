@@ -21,7 +21,8 @@ class HalfDensityField {
  public:
   /// position_scale  inverse length: 3 / sqrt(area) balances both kinds of block
   HalfDensityField(std::vector<HarmonicSurface> surfaces, double position_weight, double position_scale)
-      : surfaces_(std::move(surfaces)), srnf_weight_(std::sqrt(1 - position_weight)),
+      : surfaces_(std::move(surfaces)),
+        srnf_weight_(std::sqrt(1 - position_weight)),
         position_weight_(std::sqrt(position_weight) * position_scale) {
     for (const auto& f : surfaces_) degree_ = std::max(degree_, f.degree());
   }

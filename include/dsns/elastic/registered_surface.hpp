@@ -14,7 +14,9 @@ class RegisteredSurface {
       : surface_(&surface), rotation_(rotation), gamma_(std::move(gamma)), zeta_(std::move(zeta)) {}
 
   Vec3d operator()(const Vec3d& s, double t) const { return rotation_ * (*surface_)(gamma_(s).normalized(), zeta_(t)); }
-  Mat3X positions(const Mat3X& s, double t) const { return rotation_ * dsns::positions(*surface_, gamma_(s), zeta_(t)); }
+  Mat3X positions(const Mat3X& s, double t) const {
+    return rotation_ * dsns::positions(*surface_, gamma_(s), zeta_(t));
+  }
   Mat3X velocities(const Mat3X& s, double t) const {
     return zeta_.slope(t) * rotation_ * dsns::velocities(*surface_, gamma_(s), zeta_(t));
   }
@@ -43,7 +45,8 @@ class RegisteredSurface {
       const auto second = [&](const Eigen::Vector2d& p, const Eigen::Vector2d& q) -> Vec3d {
         return f.fuu.col(i) * (p[0] * q[0]) + f.fuv.col(i) * (p[0] * q[1] + p[1] * q[0]) + f.fvv.col(i) * (p[1] * q[1]);
       };
-      const Eigen::Vector2d u = part([](const auto& x) { return x.g[0]; }), v = part([](const auto& x) { return x.g[1]; });
+      const Eigen::Vector2d u = part([](const auto&x) { return x.g[0]; }),
+                            v = part([](const auto&x) { return x.g[1]; });
       out.f.col(i) = rotation_ * f.f.col(i);
       out.fu.col(i) = rotation_ * first(u);
       out.fv.col(i) = rotation_ * first(v);

@@ -23,14 +23,14 @@ struct SpatialLevel {
 
 struct SpatialOptions {
   RotationSearch search = RotationSearch::full;
-  std::vector<SpatialLevel> levels = {{1, 6, 0.05, 0.5},  {2, 6, 0.05, 0.5},  {3, 8, 0.03, 0.5},   {4, 8, 0.02, 0.5},
+  std::vector<SpatialLevel> levels = {{1, 6, 0.05, 0.5},  {2, 6, 0.05, 0.5},   {3, 8, 0.03, 0.5},  {4, 8, 0.02, 0.5},
                                       {6, 10, 0.01, 0.5}, {8, 12, 0.004, 0.5}, {10, 16, 0.0, 0.5}, {10, 16, 0.0, 0.0}};
   int steps_per_level = 8;
-  int latitudes = 24;       ///< quadrature of latitudes x 2 latitudes nodes
-  int rotations = 600;      ///< candidates of the search
-  int refined = 5;          ///< best candidates that are refined before one is chosen
-  double damping = 1e-3;    ///< times (l(l + 1))^2: what a field of degree l must gain to be used
-  double tolerance = 1e-3;  ///< a level ends when a step lowers the energy by less than this share of it
+  int latitudes = 24;              ///< quadrature of latitudes x 2 latitudes nodes
+  int rotations = 600;             ///< candidates of the search
+  int refined = 5;                 ///< best candidates that are refined before one is chosen
+  double damping = 1e-3;           ///< times (l(l + 1))^2: what a field of degree l must gain to be used
+  double tolerance = 1e-3;         ///< a level ends when a step lowers the energy by less than this share of it
   double min_step_jacobian = 0.3;  ///< of a single increment
   double min_jacobian = 0.02;      ///< of the composition, at the quadrature nodes
   double longest_step = 0.8;       ///< radians

@@ -95,7 +95,8 @@ inline RotationCandidate best_rotation(const SpatialPair& pair, const SpatialOpt
   for (auto& candidate : candidates) {
     std::vector<SphereVectorField> fields;
     std::vector<double> energies;
-    Particles p = problem.at((candidate.R * q.points).colwise().normalized(), Eigen::VectorXd::Ones(q.size()), candidate.O);
+    Particles p =
+        problem.at((candidate.R * q.points).colwise().normalized(), Eigen::VectorXd::Ones(q.size()), candidate.O);
     for (const int degree : {1, 2}) p = problem.minimise(std::move(p), degree, 8, fields, energies);
     candidate.energy = p.energy;
   }
@@ -135,8 +136,8 @@ inline SpatialResult register_harmonic(std::span<const HarmonicSurface> first, s
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(q.size());
 
   report(progress, "rotation search", 0);
-  const detail::RotationCandidate turn =
-      start ? detail::RotationCandidate{start->gamma.rotation(), start->rotation, 0} : detail::best_rotation(pair, options);
+  const detail::RotationCandidate turn = start ? detail::RotationCandidate{start->gamma.rotation(), start->rotation, 0}
+                                               : detail::best_rotation(pair, options);
   std::vector<SphereVectorField> fields;
   if (start) fields = start->gamma.increments();
   Mat3X y = (turn.R * q.points).colwise().normalized();
@@ -154,8 +155,8 @@ inline SpatialResult register_harmonic(std::span<const HarmonicSurface> first, s
     const SpatialLevel& level = options.levels[k];
     report(progress, "spatial registration", double(k) / double(options.levels.size()));
     const detail::SpatialProblem problem = pair.problem(level, q);
-    detail::Particles p = problem.minimise(problem.at(y, J, O), level.field_degree, options.steps_per_level, fields,
-                                           summary.energies);
+    detail::Particles p =
+        problem.minimise(problem.at(y, J, O), level.field_degree, options.steps_per_level, fields, summary.energies);
     y = std::move(p.y);
     J = std::move(p.J);
     O = p.O;

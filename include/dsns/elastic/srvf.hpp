@@ -37,7 +37,8 @@ struct TimeGrid {
 };
 
 inline TimeGrid time_grid(Index intervals = TimeWarp::default_intervals) {
-  TimeGrid grid{Eigen::VectorXd::LinSpaced(intervals + 1, 0, 1), Eigen::VectorXd::Constant(intervals + 1, 1 / double(intervals))};
+  TimeGrid grid{Eigen::VectorXd::LinSpaced(intervals + 1, 0, 1),
+                Eigen::VectorXd::Constant(intervals + 1, 1 / double(intervals))};
   grid.weights[0] = grid.weights[intervals] = 0.5 / double(intervals);
   return grid;
 }

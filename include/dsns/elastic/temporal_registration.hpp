@@ -11,8 +11,8 @@
 namespace dsns {
 
 struct TemporalOptions {
-  int grid = 200;      ///< nodes of the dynamic programming
-  int max_slope = 7;   ///< its slopes are the fractions of coprime numbers up to this
+  int grid = 200;                           ///< nodes of the dynamic programming
+  int max_slope = 7;                        ///< its slopes are the fractions of coprime numbers up to this
   std::vector<int> cosines = {16, 24, 32};  ///< unknowns of the refinement, level by level
   int steps_per_level = 15;
   double min_slope = 0.1;   ///< warps that nearly stop the clock are not taken
@@ -123,12 +123,16 @@ inline Eigen::VectorXd log_slope_coefficients(const Eigen::VectorXd& warp, int c
 class TemporalProblem {
  public:
   TemporalProblem(const Curve& first, const Curve& second, int max_cosines)
-      : grid_(time_grid()), basis_(cosines(grid_.times, max_cosines)), target_(warped_srvf(first, {}, grid_)),
+      : grid_(time_grid()),
+        basis_(cosines(grid_.times, max_cosines)),
+        target_(warped_srvf(first, {}, grid_)),
         second_(&second) {}
 
   TimeWarp warp(const Eigen::VectorXd& c) const { return TimeWarp::from_log_slope(basis_.leftCols(c.size()) * c); }
   double norm() const { return squared_norm(target_, grid_); }
-  double energy(const TimeWarp& zeta) const { return squared_norm(target_ - warped_srvf(*second_, zeta, grid_), grid_); }
+  double energy(const TimeWarp& zeta) const {
+    return squared_norm(target_ - warped_srvf(*second_, zeta, grid_), grid_);
+  }
 
   struct NormalEquations {
     Eigen::MatrixXd matrix;
@@ -172,7 +176,8 @@ class TemporalProblem {
 /// Registers the second curve to the first in time.
 /// returns  an increasing warp; the identity where nothing better was found, or where the first curve rests
 /// accuracy L2 error below 1e-3 for strong smooth warps [elastic/temporal_registration_test]
-inline TemporalResult register_temporally(const Curve& first, const Curve& second, const TemporalOptions& options = {}) {
+inline TemporalResult register_temporally(const Curve& first, const Curve& second,
+                                          const TemporalOptions& options = {}) {
   require(first.dimension() == second.dimension(), "register_temporally: curves in R^", first.dimension(), " and R^",
           second.dimension(), ", project both on one basis");
   require(!options.cosines.empty() && options.grid >= 2, "register_temporally: ", options.cosines.size(),
@@ -188,7 +193,8 @@ inline TemporalResult register_temporally(const Curve& first, const Curve& secon
 
   const TimeGrid coarse = time_grid(options.grid - 1);
   Eigen::VectorXd c = detail::log_slope_coefficients(
-      detail::dynamic_programming_warp(warped_srvf(first, {}, coarse), warped_srvf(second, {}, coarse), options.max_slope),
+      detail::dynamic_programming_warp(warped_srvf(first, {}, coarse), warped_srvf(second, {}, coarse),
+                                       options.max_slope),
       options.cosines.front());
   double energy = problem.energy(problem.warp(c));
   if (energy > summary.energy_before || problem.warp(c).slopes().minCoeff() < options.min_slope) {

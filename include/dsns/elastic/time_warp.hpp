@@ -17,7 +17,9 @@ class TimeWarp {
   static constexpr Index default_intervals = 400;
 
   /// The identity.
-  TimeWarp() : TimeWarp(Eigen::VectorXd::LinSpaced(default_intervals + 1, 0, 1), Eigen::VectorXd::Ones(default_intervals + 1)) {}
+  TimeWarp()
+      : TimeWarp(Eigen::VectorXd::LinSpaced(default_intervals + 1, 0, 1),
+                 Eigen::VectorXd::Ones(default_intervals + 1)) {}
 
   /// Values and slopes at equidistant times from 0 to 1.
   /// throws   InvalidArgument unless the values increase from 0 to 1 and the slopes are positive
@@ -25,12 +27,13 @@ class TimeWarp {
     const Index n = values_.size();
     require(n >= 2 && slopes_.size() == n, "TimeWarp: ", n, " values and ", slopes_.size(),
             " slopes, give as many of both, at least two");
-    require(std::abs(values_[0]) < 1e-12 && std::abs(values_[n - 1] - 1) < 1e-12, "TimeWarp: goes from ", values_[0], " to ",
-            values_[n - 1], ", it must go from 0 to 1");
+    require(std::abs(values_[0]) < 1e-12 && std::abs(values_[n - 1] - 1) < 1e-12, "TimeWarp: goes from ", values_[0],
+            " to ", values_[n - 1], ", it must go from 0 to 1");
     values_[0] = 0;
     values_[n - 1] = 1;
     for (Index k = 0; k < n; ++k) {
-      require(slopes_[k] > 0 && (k == 0 || values_[k] > values_[k - 1]), "TimeWarp: not increasing at node ", k, " of ", n);
+      require(slopes_[k] > 0 && (k == 0 || values_[k] > values_[k - 1]), "TimeWarp: not increasing at node ", k, " of ",
+              n);
       // Slopes up to three times the neighbouring secants keep the cubics monotone (Fritsch and Carlson 1980).
       if (k > 0) slopes_[k] = std::min(slopes_[k], 3 * secant(k - 1));
       if (k + 1 < n) slopes_[k] = std::min(slopes_[k], 3 * secant(k));
@@ -76,7 +79,8 @@ class TimeWarp {
   /// The smallest slope over the nodes and four points between any two.
   double min_slope() const {
     double least = slopes_.minCoeff();
-    for (Index k = 0; k < 5 * intervals(); ++k) least = std::min(least, slope((double(k) + 0.5) / (5 * double(intervals()))));
+    for (Index k = 0; k < 5 * intervals(); ++k)
+      least = std::min(least, slope((double(k) + 0.5) / (5 * double(intervals()))));
     return least;
   }
 
@@ -140,7 +144,8 @@ inline TimeWarp random_warp(std::uint64_t seed, double strength) {
   Eigen::VectorXd u = Eigen::VectorXd::Zero(TimeWarp::default_intervals + 1);
   for (int k = 1; k <= 4; ++k) {
     const double amplitude = strength * normal(random) / k, phase = uniform(random);
-    for (Index i = 0; i < u.size(); ++i) u[i] += amplitude * std::cos(k * pi * double(i) / double(u.size() - 1) + phase);
+    for (Index i = 0; i < u.size(); ++i)
+      u[i] += amplitude * std::cos(k * pi * double(i) / double(u.size() - 1) + phase);
   }
   return TimeWarp::from_log_slope(u);
 }

@@ -8,7 +8,7 @@ namespace dsns {
 /// Size and place of a closed surface.
 struct SurfaceMeasures {
   double area = 0;
-  double volume = 0;     ///< by the divergence theorem, 1/3 of the flux of the position
+  double volume = 0;  ///< by the divergence theorem, 1/3 of the flux of the position
   Vec3d area_centroid = Vec3d::Zero();
   double total_curvature = 0;  ///< integral of K: 4 pi for every closed genus-0 surface (Gauss-Bonnet)
 };

@@ -165,14 +165,22 @@ double number(const unsigned char* bytes, const Layout& layout) {
 /// One component. source: glTF 2.0, sections 3.6.2.2 and 3.11 (normalised integers)
 inline double component(const unsigned char* bytes, const Layout& layout) {
   switch (layout.type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return number<std::int8_t>(bytes, layout);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return number<std::uint8_t>(bytes, layout);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return number<std::int16_t>(bytes, layout);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return number<std::uint16_t>(bytes, layout);
-    case TINYGLTF_COMPONENT_TYPE_INT: return number<std::int32_t>(bytes, layout);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return number<std::uint32_t>(bytes, layout);
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return number<float>(bytes, layout);
-    default: return number<double>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return number<std::int8_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return number<std::uint8_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return number<std::int16_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return number<std::uint16_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_INT:
+      return number<std::int32_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return number<std::uint32_t>(bytes, layout);
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      return number<float>(bytes, layout);
+    default:
+      return number<double>(bytes, layout);
   }
 }
 
@@ -186,8 +194,8 @@ inline Eigen::MatrixXd decode(const GltfFile& file, Bytes bytes, const Layout& l
   Eigen::MatrixXd values(layout.components, Index(count));
   for (Index i = 0; i < values.cols(); ++i)
     for (Index k = 0; k < layout.components; ++k)
-      values(k, i) = component(bytes.data() + std::size_t(i) * stride + std::size_t(k) * layout.component_size(),
-                               layout);
+      values(k, i) =
+          component(bytes.data() + std::size_t(i) * stride + std::size_t(k) * layout.component_size(), layout);
   return values;
 }
 

@@ -36,12 +36,12 @@ struct Clip {
   double start = 0, end = 0;  ///< seconds
 };
 
-inline Track read_track(const GltfFile& file, const tinygltf::AnimationSampler& sampler, int node,
-                        Track::Target target, const std::string& what) {
+inline Track read_track(const GltfFile& file, const tinygltf::AnimationSampler& sampler, int node, Track::Target target,
+                        const std::string& what) {
   Track track{node, target, Track::Interpolation::linear, {}, {}};
-  file.check(sampler.interpolation == "LINEAR" || sampler.interpolation == "STEP" ||
-                 sampler.interpolation == "CUBICSPLINE",
-             what, " is interpolated by '", sampler.interpolation, "': glTF knows LINEAR, STEP and CUBICSPLINE");
+  file.check(
+      sampler.interpolation == "LINEAR" || sampler.interpolation == "STEP" || sampler.interpolation == "CUBICSPLINE",
+      what, " is interpolated by '", sampler.interpolation, "': glTF knows LINEAR, STEP and CUBICSPLINE");
   if (sampler.interpolation == "STEP") track.interpolation = Track::Interpolation::step;
   if (sampler.interpolation == "CUBICSPLINE") track.interpolation = Track::Interpolation::cubic;
   track.times = read_accessor(file, sampler.input, TINYGLTF_TYPE_SCALAR, what + ", times").transpose();
@@ -146,8 +146,8 @@ inline NodePose rest_pose(const GltfFile& file, const tinygltf::Node& node) {
     pose.matrix.matrix() = Eigen::Matrix4d::Map(node.matrix.data());
     pose.from_matrix = true;
   }
-  const auto& weights = node.weights.empty() && node.mesh >= 0 ? at(file, file.model.meshes, node.mesh, "mesh").weights
-                                                               : node.weights;
+  const auto& weights =
+      node.weights.empty() && node.mesh >= 0 ? at(file, file.model.meshes, node.mesh, "mesh").weights : node.weights;
   pose.weights = Eigen::VectorXd::Map(weights.data(), Index(weights.size()));
   return pose;
 }

@@ -18,7 +18,7 @@ struct GltfReadOptions {
 
 struct GltfAnimation {
   MeshSequence sequence;
-  std::string clip;                    ///< full name of the clip that was read
+  std::string clip;                     ///< full name of the clip that was read
   bool clip_chosen_by_default = false;  ///< no name was given
 };
 
@@ -28,7 +28,7 @@ namespace detail::gltf {
 struct MeshPart {
   std::size_t node;
   Mat3X points;
-  std::vector<Mat3X> targets;                  ///< displacements by morph target; empty matrices displace nothing
+  std::vector<Mat3X> targets;  ///< displacements by morph target; empty matrices displace nothing
   const tinygltf::Skin* skin = nullptr;
   std::vector<Eigen::Affine3d> inverse_binds;  ///< by joint
   Eigen::MatrixXi joints;                      ///< influences x n
@@ -53,9 +53,12 @@ inline Faces triangles_of(const GltfFile& file, const tinygltf::Primitive& primi
   const bool separate = primitive.mode == TINYGLTF_MODE_TRIANGLES;
   Faces faces(3, separate ? count / 3 : std::max<Index>(count - 2, 0));
   for (Index f = 0; f < faces.cols(); ++f) {
-    if (separate) faces.col(f) << corner(3 * f), corner(3 * f + 1), corner(3 * f + 2);
-    else if (primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN) faces.col(f) << corner(0), corner(f + 1), corner(f + 2);
-    else faces.col(f) << corner(f), corner(f + 1 + f % 2), corner(f + 2 - f % 2);
+    if (separate)
+      faces.col(f) << corner(3 * f), corner(3 * f + 1), corner(3 * f + 2);
+    else if (primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN)
+      faces.col(f) << corner(0), corner(f + 1), corner(f + 2);
+    else
+      faces.col(f) << corner(f), corner(f + 1 + f % 2), corner(f + 2 - f % 2);
   }
   return faces;
 }
@@ -74,8 +77,10 @@ inline void read_influences(const GltfFile& file, const tinygltf::Primitive& pri
   const int joint_count = static_cast<int>(part.skin->joints.size());
   for (Index v = 0; v < part.weights.cols(); ++v) {
     const double sum = part.weights.col(v).sum();
-    if (sum > 0) part.weights.col(v) /= sum;
-    else part.weights.col(v) = Eigen::VectorXd::Unit(part.weights.rows(), 0);  // as viewers do
+    if (sum > 0)
+      part.weights.col(v) /= sum;
+    else
+      part.weights.col(v) = Eigen::VectorXd::Unit(part.weights.rows(), 0);  // as viewers do
     for (Index k = 0; k < part.weights.rows(); ++k)
       file.check(part.weights(k, v) == 0 || (part.joints(k, v) >= 0 && part.joints(k, v) < joint_count), "vertex ", v,
                  " hangs on joint ", part.joints(k, v), " of ", joint_count, ": the file is damaged, export it again");

@@ -25,9 +25,9 @@ namespace dsns {
 struct GltfWriteOptions {
   double duration = 0;  ///< seconds of the clip; 0: the first body's
   std::string clip = "motion";
-  std::vector<Vec3d> offsets;         ///< by body, where it stands
-  std::vector<Vec3d> colors;          ///< by body, linear RGB in [0, 1]
-  std::vector<Mat3X> vertex_colors;   ///< by body, 3 x n linear RGB in [0, 1]; 3 x 0: none
+  std::vector<Vec3d> offsets;        ///< by body, where it stands
+  std::vector<Vec3d> colors;         ///< by body, linear RGB in [0, 1]
+  std::vector<Mat3X> vertex_colors;  ///< by body, 3 x n linear RGB in [0, 1]; 3 x 0: none
 };
 
 namespace detail::gltf {
@@ -77,9 +77,7 @@ class GltfBuilder {
     return static_cast<int>(model.accessors.size()) - 1;
   }
 
-  int append_vectors(const Mat3Xf& values) {
-    return append(values, TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER);
-  }
+  int append_vectors(const Mat3Xf& values) { return append(values, TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER); }
 
   std::string glb() {
     model.buffers.emplace_back().data = std::move(bytes_);
@@ -128,8 +126,7 @@ inline tinygltf::Mesh morphing_mesh(GltfBuilder& builder, const MeshSequence& bo
   primitive.attributes["POSITION"] = builder.append_vectors(points);
   primitive.attributes["NORMAL"] = builder.append_vectors(normals);
   if (vertex_colors.cols() > 0)
-    primitive.attributes["COLOR_0"] =
-        builder.append_vectors(vertex_colors.cwiseMax(0).cwiseMin(1).cast<float>());
+    primitive.attributes["COLOR_0"] = builder.append_vectors(vertex_colors.cwiseMax(0).cwiseMin(1).cast<float>());
   primitive.indices = builder.append(Eigen::Matrix<std::uint32_t, 3, Eigen::Dynamic>(body.faces.cast<std::uint32_t>()),
                                      TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
   for (std::size_t k = 1; k < body.frames.size(); ++k) {
@@ -176,8 +173,8 @@ inline void check_bodies(const std::vector<MeshSequence>& bodies, const GltfWrit
       require(frame.cols() == n && frame.allFinite(), "write_gltf: a frame of body ", b, " has ", frame.cols(),
               " vertices (the first ", n, ") or a position that is not finite");
     const Index colored = options.vertex_colors.empty() ? 0 : options.vertex_colors[b].cols();
-    require(colored == 0 || colored == n, "write_gltf: ", colored, " vertex colors for the ", n,
-            " vertices of body ", b);
+    require(colored == 0 || colored == n, "write_gltf: ", colored, " vertex colors for the ", n, " vertices of body ",
+            b);
   }
 }
 

@@ -88,8 +88,8 @@ inline TriangleMesh read_obj(const std::filesystem::path& path) {
         int i = 0;
         const bool parsed = detail::parse_number(word.substr(0, word.find('/')), i);
         if (i < 0) i += static_cast<int>(points.size()) + 1;
-        check(parsed && i >= 1 && i <= static_cast<int>(points.size()), "'", word,
-              "' is not one of the ", points.size(), " vertices defined so far");
+        check(parsed && i >= 1 && i <= static_cast<int>(points.size()), "'", word, "' is not one of the ",
+              points.size(), " vertices defined so far");
         corners.push_back(i - 1);
       }
       check(corners.size() >= 3, "a face of ", corners.size(), " vertices, give at least 3");

@@ -17,13 +17,13 @@ struct MeshDiagnosis {
   Index vertices = 0;  ///< that a face uses
   Index faces = 0;
   Index edges = 0;
-  int components = 0;              ///< pieces that hang together by shared edges
-  int boundary_loops = 0;          ///< holes
-  Index boundary_edges = 0;        ///< edges with one face
-  Index nonmanifold_edges = 0;     ///< edges with three faces or more, or twice in one face
-  Index nonmanifold_vertices = 0;  ///< vertices whose faces form more than one fan
-  int euler_characteristic = 0;    ///< V - E + F; 2 for a sphere
-  bool closed = false;             ///< every edge has two faces
+  int components = 0;                  ///< pieces that hang together by shared edges
+  int boundary_loops = 0;              ///< holes
+  Index boundary_edges = 0;            ///< edges with one face
+  Index nonmanifold_edges = 0;         ///< edges with three faces or more, or twice in one face
+  Index nonmanifold_vertices = 0;      ///< vertices whose faces form more than one fan
+  int euler_characteristic = 0;        ///< V - E + F; 2 for a sphere
+  bool closed = false;                 ///< every edge has two faces
   bool consistently_oriented = false;  ///< the two faces of an edge run through it in opposite directions
   std::optional<int> genus;            ///< handles, where the surface is closed, oriented, of one piece and manifold
 };

@@ -18,18 +18,18 @@
 namespace dsns {
 
 struct RepairOptions {
-  double weld_tolerance = 1e-6;  ///< relative to the bounding-box diagonal
-  int weld_frames = 4;           ///< frames in which vertices must coincide to be welded
+  double weld_tolerance = 1e-6;    ///< relative to the bounding-box diagonal
+  int weld_frames = 4;             ///< frames in which vertices must coincide to be welded
   double loose_piece_limit = 0.2;  ///< largest area of a piece that is dropped, as a share of the kept one's
 };
 
 struct RepairResult {
   MeshSequence sequence;
-  std::vector<std::string> actions;   ///< what was done, in plain words; empty where nothing was needed
-  MeshDiagnosis before;               ///< of the mesh as given
-  MeshDiagnosis welded;               ///< after welding and dropping degenerate and duplicate faces, all pieces
-  MeshDiagnosis after;                ///< of the result: closed, genus 0
-  std::vector<Index> source_vertex;   ///< for each vertex the given one it moves with; -1 for the centre of a cap
+  std::vector<std::string> actions;  ///< what was done, in plain words; empty where nothing was needed
+  MeshDiagnosis before;              ///< of the mesh as given
+  MeshDiagnosis welded;              ///< after welding and dropping degenerate and duplicate faces, all pieces
+  MeshDiagnosis after;               ///< of the result: closed, genus 0
+  std::vector<Index> source_vertex;  ///< for each vertex the given one it moves with; -1 for the centre of a cap
 };
 
 namespace detail {
@@ -67,8 +67,8 @@ inline FaceSelection welded_faces(const Faces& faces, const std::vector<Index>& 
 
 /// The piece with the largest area, averaged over all frames.
 /// throws   UnusableMesh where the second largest is more than options.loose_piece_limit of it
-inline FaceSelection largest_piece(const MeshSequence& sequence, const FaceSelection& all,
-                                   const RepairOptions& options, std::vector<std::string>& actions) {
+inline FaceSelection largest_piece(const MeshSequence& sequence, const FaceSelection& all, const RepairOptions& options,
+                                   std::vector<std::string>& actions) {
   const Faces& faces = all.faces;
   auto pieces = face_pieces(sorted_sides(faces), faces.cols());
   Eigen::VectorXd face_areas = Eigen::VectorXd::Zero(faces.cols());
@@ -144,8 +144,8 @@ inline RepairResult repair(const MeshSequence& raw, const RepairOptions& options
   if (result.welded.vertices < result.before.vertices)
     result.actions.push_back(message("welded ", result.before.vertices, " vertices to ", result.welded.vertices));
   if (kept.faces.cols() < raw.faces.cols())
-    result.actions.push_back("dropped " + detail::counted(raw.faces.cols() - kept.faces.cols(),
-                                                          "degenerate or duplicate face"));
+    result.actions.push_back("dropped " +
+                             detail::counted(raw.faces.cols() - kept.faces.cols(), "degenerate or duplicate face"));
 
   kept = detail::largest_piece(raw, kept, options, result.actions);
   const Faces turned = detail::oriented(kept.faces, raw.name);

@@ -1,6 +1,6 @@
 #pragma once
-/// Smooth activation functions: at one scalar of any differentiable type, and over columns of numbers with their first and
-/// second derivatives in a fused pass.
+/// Smooth activation functions: at one scalar of any differentiable type, and over columns of numbers with their first
+/// and second derivatives in a fused pass.
 #include <dsns/autodiff/functions.hpp>
 
 #include <Eigen/Core>

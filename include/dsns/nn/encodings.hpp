@@ -6,14 +6,16 @@
 
 namespace dsns {
 
-/// Space: real spherical harmonics of degree 1 to `harmonic_degree` (0: none), scaled to mean square 1, and/or
-/// sin, cos(space_base 2^k x) of each coordinate, k < space_octaves.
+/// Space: real spherical harmonics of degree l = 1 to `harmonic_degree` (0: none) with root mean square l^-harmonic_decay,
+/// and/or sin, cos(space_base 2^k x) of each coordinate, k < space_octaves. Decay trades detail against smoothness: at 0
+/// positions of limbed bodies are fitted best, at 2 second derivatives of smooth bodies are some hundred times better.
 /// Time: sin, cos(pi k t), k = 1 .. time_frequencies, and/or sin, cos(time_base 2^k t), k < time_octaves.
 struct SurfaceEncoding {
-  int harmonic_degree = 8;
+  int harmonic_degree = 10;
+  double harmonic_decay = 0.5;
   int space_octaves = 0;
   double space_base = 0.1;
-  int time_frequencies = 6;
+  int time_frequencies = 8;
   int time_octaves = 0;
   double time_base = 0.1;
 
@@ -30,7 +32,8 @@ struct SurfaceEncoding {
     Index row = 0;
     if (harmonic_degree > 0) {
       row = harmonic_count(harmonic_degree) - 1;
-      out.head(row) = harmonics<T>(s, harmonic_degree).tail(row) * std::sqrt(4 * pi);
+      out.head(row) = harmonics<T>(s, harmonic_degree).tail(row);
+      for (Index k = 0; k < row; ++k) out[k] *= harmonic_scale(k);
     }
     for (int k = 0; k < space_octaves; ++k)
       for (const T& x : s) append_waves(out, row, T(std::ldexp(space_base, k) * x));
@@ -46,6 +49,10 @@ struct SurfaceEncoding {
   }
 
  private:
+  double harmonic_scale(Index k) const {
+    const double degree = std::floor(std::sqrt(double(k + 1)));
+    return std::sqrt(4 * pi) * std::pow(degree, -harmonic_decay);
+  }
   template <class T>
   static void append_waves(Eigen::VectorX<T>& out, Index& row, const T& angle) {
     using std::cos, std::sin;

@@ -1,7 +1,7 @@
 #pragma once
-/// Multilayer perceptron with residual blocks: x -> a(W x + b), then blocks x -> a(W2 a(W1 x + b1) + b2 + x), then a linear
-/// output. Two ways through it: one point with any scalar (the oracle, and the way of Dual, Jet2 and Var), and columns of
-/// many points by matrix products, where first and second derivatives ride along as further columns.
+/// Multilayer perceptron with residual blocks: x -> a(W x + b), then blocks x -> a(W2 a(W1 x + b1) + b2 + x), then a
+/// linear output. Two ways through it: one point with any scalar (the oracle, and the way of Dual, Jet2 and Var), and
+/// columns of many points by matrix products, where first and second derivatives ride along as further columns.
 #include <dsns/autodiff/matrix.hpp>
 #include <dsns/core/types.hpp>
 #include <dsns/nn/activations.hpp>
@@ -83,7 +83,7 @@ class Mlp {
     return affine(shape_.layers() - 1, y);
   }
 
-  /// A tile of n points carried through all layers: x holds the blocks of `order`, inputs x (blocks n); so does the result.
+  /// A tile of n points carried through all layers: x and the result have n columns for each part of the jets.
   /// accuracy equal to the scalar path to 1e-12 [nn/mlp_test]
   Matrix columns(Matrix x, JetOrder order) const {
     require(x.rows() == shape_.inputs && x.cols() % Index(order) == 0, "Mlp::columns: ", x.rows(), " x ", x.cols(),

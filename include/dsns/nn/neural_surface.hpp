@@ -1,6 +1,6 @@
 #pragma once
-/// A moving surface F(s, t) that is a network: encoding, perceptron, then the units of the data. Exact derivatives in s and
-/// t. A point at a time goes through any scalar (the oracle); many points go in tiles through matrix products.
+/// A moving surface F(s, t) that is a network: encoding, perceptron, then the units of the data. Exact derivatives in s
+/// and t. A point at a time goes through any scalar (the oracle); many points go in tiles through matrix products.
 #include <dsns/nn/encodings.hpp>
 #include <dsns/nn/mlp.hpp>
 #include <dsns/surface/jets.hpp>
@@ -19,8 +19,8 @@ class NeuralSurface {
                 double scale = 1)
       : encoding_(encoding), network_(std::move(network)), translation_(translation), scale_(scale) {
     require(network_.shape().inputs == encoding.features() && network_.shape().outputs == 3,
-            "NeuralSurface: the encoding has ", encoding.features(), " features, the network ",
-            network_.shape().inputs, " inputs and ", network_.shape().outputs, " outputs; give it 3 outputs");
+            "NeuralSurface: the encoding has ", encoding.features(), " features, the network ", network_.shape().inputs,
+            " inputs and ", network_.shape().outputs, " outputs; give it 3 outputs");
   }
 
   const SurfaceEncoding& encoding() const { return encoding_; }
@@ -42,11 +42,14 @@ class NeuralSurface {
   Mat3X positions(const Mat3X& s, double t) const {
     Mat3X out(3, s.cols());
     const Eigen::VectorXd time = encoding_.time(t);
-    for_tiles(s.cols(), JetOrder::value, [&](Index first, Index n, Eigen::MatrixXd& x) {
-      for (Index i = 0; i < n; ++i) x.col(i) << encoding_.space(Vec3d(s.col(first + i))), time;
-    }, [&](Index first, Index n, const Eigen::MatrixXd& y) {
-      out.middleCols(first, n) = (scale_ * y).colwise() + translation_;
-    });
+    for_tiles(
+        s.cols(), JetOrder::value,
+        [&](Index first, Index n, Eigen::MatrixXd& x) {
+          for (Index i = 0; i < n; ++i) x.col(i) << encoding_.space(Vec3d(s.col(first + i))), time;
+        },
+        [&](Index first, Index n, const Eigen::MatrixXd& y) {
+          out.middleCols(first, n) = (scale_ * y).colwise() + translation_;
+        });
     return out;
   }
 
@@ -56,14 +59,17 @@ class NeuralSurface {
     Mat3X out(3, s.cols());
     const Eigen::VectorX<D> time = encoding_.time(D::variable(t, 0));
     const Index space = encoding_.space_features();
-    for_tiles(s.cols(), JetOrder::tangent, [&](Index first, Index n, Eigen::MatrixXd& x) {
-      for (Index i = 0; i < n; ++i) x.col(i).head(space) = encoding_.space(Vec3d(s.col(first + i)));
-      x.topRightCorner(space, n).setZero();
-      for (Index k = 0; k < time.size(); ++k) {
-        x.row(space + k).head(n).setConstant(time[k].f);
-        x.row(space + k).tail(n).setConstant(time[k].g[0]);
-      }
-    }, [&](Index first, Index n, const Eigen::MatrixXd& y) { out.middleCols(first, n) = scale_ * y.rightCols(n); });
+    for_tiles(
+        s.cols(), JetOrder::tangent,
+        [&](Index first, Index n, Eigen::MatrixXd& x) {
+          for (Index i = 0; i < n; ++i) x.col(i).head(space) = encoding_.space(Vec3d(s.col(first + i)));
+          x.topRightCorner(space, n).setZero();
+          for (Index k = 0; k < time.size(); ++k) {
+            x.row(space + k).head(n).setConstant(time[k].f);
+            x.row(space + k).tail(n).setConstant(time[k].g[0]);
+          }
+        },
+        [&](Index first, Index n, const Eigen::MatrixXd& y) { out.middleCols(first, n) = scale_ * y.rightCols(n); });
     return out;
   }
 
@@ -72,22 +78,25 @@ class NeuralSurface {
     SurfaceJets out(charts.size());
     const Eigen::VectorXd time = encoding_.time(t);
     const Index space = encoding_.space_features();
-    for_tiles(charts.size(), JetOrder::second, [&](Index first, Index n, Eigen::MatrixXd& x) {
-      x.bottomRows(time.size()).setZero();
-      x.bottomLeftCorner(time.size(), n).colwise() = time;
-      for (Index i = 0; i < n; ++i) {
-        const auto jet = encoding_.space(detail::chart_jet(charts, first + i));
-        for (Index k = 0; k < space; ++k) {
-          const auto& [f, g, h] = jet[k];
-          const double blocks[] = {f, g[0], g[1], h[0], h[1], h[2]};
-          for (Index b = 0; b < 6; ++b) x(k, b * n + i) = blocks[b];
-        }
-      }
-    }, [&](Index first, Index n, const Eigen::MatrixXd& y) {
-      Mat3X* fields[] = {&out.f, &out.fu, &out.fv, &out.fuu, &out.fuv, &out.fvv};
-      for (Index b = 0; b < 6; ++b) fields[b]->middleCols(first, n) = scale_ * y.middleCols(b * n, n);
-      out.f.middleCols(first, n).colwise() += translation_;
-    });
+    for_tiles(
+        charts.size(), JetOrder::second,
+        [&](Index first, Index n, Eigen::MatrixXd& x) {
+          x.bottomRows(time.size()).setZero();
+          x.bottomLeftCorner(time.size(), n).colwise() = time;
+          for (Index i = 0; i < n; ++i) {
+            const auto jet = encoding_.space(detail::chart_jet(charts, first + i));
+            for (Index k = 0; k < space; ++k) {
+              const auto& [f, g, h] = jet[k];
+              const double blocks[] = {f, g[0], g[1], h[0], h[1], h[2]};
+              for (Index b = 0; b < 6; ++b) x(k, b * n + i) = blocks[b];
+            }
+          }
+        },
+        [&](Index first, Index n, const Eigen::MatrixXd& y) {
+          Mat3X* fields[] = {&out.f, &out.fu, &out.fv, &out.fuu, &out.fuv, &out.fvv};
+          for (Index b = 0; b < 6; ++b) fields[b]->middleCols(first, n) = scale_ * y.middleCols(b * n, n);
+          out.f.middleCols(first, n).colwise() += translation_;
+        });
     return out;
   }
 

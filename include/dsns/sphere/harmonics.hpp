@@ -98,8 +98,16 @@ struct HarmonicJets {
   Eigen::MatrixXd y, dx, dy, dz, dxx, dyy, dzz, dxy, dxz, dyz;
 
   HarmonicJets(Index points, Index count)
-      : y(points, count), dx(points, count), dy(points, count), dz(points, count), dxx(points, count),
-        dyy(points, count), dzz(points, count), dxy(points, count), dxz(points, count), dyz(points, count) {}
+      : y(points, count),
+        dx(points, count),
+        dy(points, count),
+        dz(points, count),
+        dxx(points, count),
+        dyy(points, count),
+        dzz(points, count),
+        dxy(points, count),
+        dxz(points, count),
+        dyz(points, count) {}
 };
 
 namespace detail {

@@ -97,9 +97,9 @@ Vec3<T> exponential(const SphereVectorField& v, const Vec3<T>& s) {
 
 /// n points carried by exp(v), with the images of the frame vectors and the area factor.
 struct SphereDisplacement {
-  Mat3X y;                ///< unit, 3 x n
-  Mat3X y1, y2;           ///< differential of the map on e1 and e2, 3 x n
-  Eigen::VectorXd J;      ///< y . (y1 x y2): ratio of areas, n
+  Mat3X y;                  ///< unit, 3 x n
+  Mat3X y1, y2;             ///< differential of the map on e1 and e2, 3 x n
+  Eigen::VectorXd J;        ///< y . (y1 x y2): ratio of areas, n
   double longest_step = 0;  ///< radians
 };
 
@@ -107,7 +107,9 @@ struct SphereDisplacement {
 /// accuracy 1e-12 against Jet2 through exponential() [sphere/vector_field_test]
 inline SphereDisplacement displace(const SphereVectorField& v, const ChartBatch& c, const HarmonicJets& h) {
   const Index n = c.size(), count = v.a.size();
-  const auto times = [&](const Eigen::MatrixXd& m, const Eigen::VectorXd& k) { return Eigen::VectorXd(m.leftCols(count) * k); };
+  const auto times = [&](const Eigen::MatrixXd& m, const Eigen::VectorXd& k) {
+    return Eigen::VectorXd(m.leftCols(count) * k);
+  };
   const auto gradient = [&](const Eigen::VectorXd& k) {
     Mat3X g(3, n);
     g << times(h.dx, k).transpose(), times(h.dy, k).transpose(), times(h.dz, k).transpose();

@@ -46,14 +46,16 @@ SurfaceSamples sample(const F& surface, const SpatialResult& registration, const
       samples.snapshots[std::size_t(k)] = registration.rotation * positions(surface, y, t);
     } else {
       const int j = k - options.snapshots;
-      samples.velocities[std::size_t(j)] = registration.rotation * velocities(surface, y, double(j) / options.velocities);
+      samples.velocities[std::size_t(j)] =
+          registration.rotation * velocities(surface, y, double(j) / options.velocities);
     }
   });
   return samples;
 }
 
 /// One basis for all samples. Weights: a third of the area around each vertex, averaged over all surfaces and times.
-inline FunctionalPca joint_pca(const std::vector<SurfaceSamples>& samples, const Faces& faces, const PcaOptions& options) {
+inline FunctionalPca joint_pca(const std::vector<SurfaceSamples>& samples, const Faces& faces,
+                               const PcaOptions& options) {
   std::vector<Mat3X> all;
   for (const auto& s : samples) all.insert(all.end(), s.snapshots.begin(), s.snapshots.end());
   require(!all.empty(), "joint_pca: no samples, give at least one surface");
@@ -74,7 +76,8 @@ namespace detail {
 
 /// Projections on harmonics at the images of equidistant times.
 template <AnimatedSurface F>
-std::vector<HarmonicSurface> harmonic_stack(const F& surface, const TimeWarp& zeta, const RegistrationOptions& options) {
+std::vector<HarmonicSurface> harmonic_stack(const F& surface, const TimeWarp& zeta,
+                                            const RegistrationOptions& options) {
   const int times = std::max(1, options.spatial_times), degree = surface_degree(options.spatial);
   std::vector<HarmonicSurface> stack(std::size_t(times), HarmonicSurface(Eigen::MatrixX3d::Zero(1, 3)));
   parallel_for(times, options.spatial.threads, [&](int k) {
@@ -96,9 +99,9 @@ MovingRegistration register_moving(const F1& first, const F2& second, const Tria
   const SurfaceSamples target_samples = sample(first, {}, sphere.vertices, options);
   for (int round = 0; round < std::max(1, options.rounds); ++round) {
     const auto moved = detail::harmonic_stack(second, result.temporal.warp, options);
-    result.spatial = register_harmonic(target, moved, options.spatial, round == 0 ? nullptr : &result.spatial, progress);
-    const std::vector<SurfaceSamples> samples{target_samples,
-                                              sample(second, result.spatial, sphere.vertices, options)};
+    result.spatial =
+        register_harmonic(target, moved, options.spatial, round == 0 ? nullptr : &result.spatial, progress);
+    const std::vector<SurfaceSamples> samples{target_samples, sample(second, result.spatial, sphere.vertices, options)};
     const FunctionalPca pca = joint_pca(samples, sphere.faces, options.pca);
     result.temporal = register_temporally(shape_curve(samples[0], pca), shape_curve(samples[1], pca), options.temporal);
     report(progress, "temporal registration", double(round + 1) / options.rounds);

@@ -20,9 +20,9 @@ struct KarcherSummary {
 };
 
 struct KarcherMean {
-  Eigen::VectorXd start;         ///< mean of the starts, K
-  Eigen::MatrixXd q;             ///< SRVF of the mean on the grid of time_grid(), K x n
-  std::vector<TimeWarp> warps;   ///< curve i is taken along warps[i]; their own mean is the identity
+  Eigen::VectorXd start;        ///< mean of the starts, K
+  Eigen::MatrixXd q;            ///< SRVF of the mean on the grid of time_grid(), K x n
+  std::vector<TimeWarp> warps;  ///< curve i is taken along warps[i]; their own mean is the identity
   KarcherSummary summary;
 };
 
@@ -64,7 +64,8 @@ inline KarcherMean karcher_mean(const std::vector<Curve>& curves, const KarcherO
   result.summary.energy.push_back(aligned.energy);
   std::size_t nearest = 0;
   for (std::size_t i = 1; i < curves.size(); ++i)
-    if (squared_norm(aligned.q[i] - aligned.mean, grid) < squared_norm(aligned.q[nearest] - aligned.mean, grid)) nearest = i;
+    if (squared_norm(aligned.q[i] - aligned.mean, grid) < squared_norm(aligned.q[nearest] - aligned.mean, grid))
+      nearest = i;
   Eigen::MatrixXd target = aligned.q[nearest];
   const Eigen::VectorXd no_start = Eigen::VectorXd::Zero(curves.front().dimension());
 

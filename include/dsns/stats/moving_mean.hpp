@@ -15,8 +15,8 @@ struct MovingMeanOptions {
 struct MovingMean {
   std::vector<MovingRegistration> registrations;  ///< of every surface to the first; the first's own is the identity
   std::vector<double> pca_variances;
-  double pca_residual = 0;  ///< mean squared coordinate error of the components
-  KarcherMean curves;       ///< its warps take every surface to the mean's clock
+  double pca_residual = 0;    ///< mean squared coordinate error of the components
+  KarcherMean curves;         ///< its warps take every surface to the mean's clock
   std::vector<Mat3X> frames;  ///< the mean at equidistant times on the vertices of the sphere mesh
 };
 
@@ -43,7 +43,8 @@ MovingMean mean_of_moving(const std::vector<F>& surfaces, const TriangleMesh& sp
   for (const auto& s : samples) curves.push_back(shape_curve(s, pca));
   result.curves = karcher_mean(curves, options.karcher, progress);
   const Eigen::MatrixXd points = integrate_srvf(result.curves.start, result.curves.q, time_grid());
-  for (int k = 0; k < frames; ++k) result.frames.push_back(pca.reconstruct(interpolate(points, double(k) / (frames - 1))));
+  for (int k = 0; k < frames; ++k)
+    result.frames.push_back(pca.reconstruct(interpolate(points, double(k) / (frames - 1))));
   return result;
 }
 

@@ -69,9 +69,7 @@ class FunctionalPca {
   }
 
  private:
-  Eigen::VectorXd project_vector(const Eigen::VectorXd& x) const {
-    return modes_.transpose() * x.cwiseProduct(root_);
-  }
+  Eigen::VectorXd project_vector(const Eigen::VectorXd& x) const { return modes_.transpose() * x.cwiseProduct(root_); }
 
   Eigen::VectorXd weights_, root_, mean_, variances_;
   Eigen::MatrixXd modes_;  // scaled by the square roots of the weights: orthonormal columns

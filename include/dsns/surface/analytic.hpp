@@ -32,9 +32,9 @@ inline double mean_curvature(const Ellipsoid& e, const Vec3d& s) {
 
 /// A limb of a LimbedBody: a smooth bump around the unit vector `root`, pulled along `reach` and swung along `swing`.
 struct Limb {
-  Vec3d root;            ///< where on the sphere it grows, unit
-  double sharpness = 8;  ///< the bump is exp(sharpness (s . root - 1)): about 1/sqrt(sharpness) radians wide
-  Vec3d reach;           ///< displacement of its tip from the trunk
+  Vec3d root;                   ///< where on the sphere it grows, unit
+  double sharpness = 8;         ///< the bump is exp(sharpness (s . root - 1)): about 1/sqrt(sharpness) radians wide
+  Vec3d reach;                  ///< displacement of its tip from the trunk
   Vec3d swing = Vec3d::Zero();  ///< amplitude of the tip's motion
   double phase = 0;             ///< of the motion, in cycles
 };

@@ -12,8 +12,8 @@ namespace dsns {
 class AnyAnimatedSurface {
  public:
   template <class F>
-    requires(AnimatedSurface<F> && !std::is_same_v<F, AnyAnimatedSurface>)
-  explicit AnyAnimatedSurface(F surface) : surface_(std::make_shared<Model<F>>(std::move(surface))) {}
+  requires(AnimatedSurface<F> && !std::is_same_v<F, AnyAnimatedSurface>) explicit AnyAnimatedSurface(F surface)
+      : surface_(std::make_shared<Model<F>>(std::move(surface))) {}
 
   Vec3d operator()(const Vec3d& s, double t) const { return surface_->value(s, t); }
   Mat3X positions(const Mat3X& s, double t) const { return surface_->positions(s, t); }

@@ -86,7 +86,7 @@ concept MovingScalarJets = requires(const F& f, const Vec3<SpatialJet>& s, Spati
 
 struct JetsFunction {
   template <class S>
-    requires MemberJets<S> || FreeJets<S> || ScalarJets<S>
+  requires MemberJets<S> || FreeJets<S> || ScalarJets<S>
   [[nodiscard]] SurfaceJets operator()(const S& f, const ChartBatch& c) const {
     if constexpr (MemberJets<S>) {
       return f.jets(c);
@@ -99,7 +99,7 @@ struct JetsFunction {
     }
   }
   template <class F>
-    requires MovingMemberJets<F> || MovingFreeJets<F> || MovingScalarJets<F>
+  requires MovingMemberJets<F> || MovingFreeJets<F> || MovingScalarJets<F>
   [[nodiscard]] SurfaceJets operator()(const F& f, const ChartBatch& c, double t) const {
     if constexpr (MovingMemberJets<F>) {
       return f.jets(c, t);
@@ -149,7 +149,9 @@ concept AnimatedSurface = requires(const F& f, const Vec3d& s, const ChartBatch&
 /// Values of a surface at the n columns of s.
 template <Surface S>
 Mat3X positions(const S& f, const Mat3X& s) {
-  if constexpr (requires { { f.positions(s) } -> std::same_as<Mat3X>; }) {
+  if constexpr (requires {
+                  { f.positions(s) } -> std::same_as<Mat3X>;
+                }) {
     return f.positions(s);
   } else {
     Mat3X out(3, s.cols());
@@ -161,7 +163,9 @@ Mat3X positions(const S& f, const Mat3X& s) {
 /// Values of a moving surface at the n columns of s and time t.
 template <AnimatedSurface F>
 Mat3X positions(const F& f, const Mat3X& s, double t) {
-  if constexpr (requires { { f.positions(s, t) } -> std::same_as<Mat3X>; }) {
+  if constexpr (requires {
+                  { f.positions(s, t) } -> std::same_as<Mat3X>;
+                }) {
     return f.positions(s, t);
   } else {
     Mat3X out(3, s.cols());

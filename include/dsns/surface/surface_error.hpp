@@ -19,7 +19,8 @@ struct SurfaceError {
 
 /// Compares at every column of s and every time. A sampled mesh's normals are those of its flat faces.
 template <AnimatedSurface A, AnimatedSurface B>
-SurfaceError compare(const A& first, const B& second, const Mat3X& s, const std::vector<double>& times, double unit = 1) {
+SurfaceError compare(const A& first, const B& second, const Mat3X& s, const std::vector<double>& times,
+                     double unit = 1) {
   require(s.cols() > 0 && !times.empty() && unit > 0, "compare: ", s.cols(), " points, ", times.size(), " times, unit ",
           unit, ", give at least one point and time and a positive unit");
   const ChartBatch charts = charts_at(s);
