@@ -6,6 +6,7 @@
 #include <dsns/io/obj.hpp>
 #include <dsns/mesh/repair.hpp>
 #include <dsns/mesh/sampling.hpp>
+#include <dsns/mesh/sphere_mesh.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
 #include <dsns/nn/fit.hpp>
 #include <dsns/stats/moving_mean.hpp>

@@ -6,9 +6,9 @@
 
 namespace dsns {
 
-/// Space: real spherical harmonics of degree l = 1 to `harmonic_degree` (0: none) with root mean square l^-harmonic_decay,
-/// and/or sin, cos(space_base 2^k x) of each coordinate, k < space_octaves. Decay trades detail against smoothness: at 0
-/// positions of limbed bodies are fitted best, at 2 second derivatives of smooth bodies are some hundred times better.
+/// Space: real spherical harmonics of degree l = 1 to `harmonic_degree` (0: none), root mean square l^-harmonic_decay,
+/// and/or sin, cos(space_base 2^k x) of each coordinate, k < space_octaves. Decay trades detail for smoothness: with 0
+/// positions of limbed bodies are fitted best, with 2 curvatures of smooth bodies are some hundred times better.
 /// Time: sin, cos(pi k t), k = 1 .. time_frequencies, and/or sin, cos(time_base 2^k t), k < time_octaves.
 struct SurfaceEncoding {
   int harmonic_degree = 10;
