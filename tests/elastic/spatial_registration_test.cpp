@@ -79,7 +79,10 @@ TEST_CASE("an ellipsoid, its sampled mesh and its network register alike, to wit
   FitOptions fit;
   fit.width = 32;
   fit.points = 4000;
-  fit.times = 2;
+  fit.times = 8;
+  fit.encoding.harmonic_degree = 4;
+  fit.encoding.harmonic_decay = 2;
+  fit.encoding.time_frequencies = 2;
   fit.batch = 512;
   fit.steps = 1500;
   const NeuralSurface network = fit_neural_surface(exact, fit).surface;

@@ -59,7 +59,10 @@ TEST_CASE("the curvature of a fitted network approaches the ellipsoid's as the f
     FitOptions options;
     options.width = 32;
     options.points = 2000;
-    options.times = 2;
+    options.times = 8;
+    options.encoding.harmonic_degree = 4;  // high harmonics would learn positions first and curvature late
+    options.encoding.harmonic_decay = 2;
+    options.encoding.time_frequencies = 2;
     options.batch = 256;
     options.steps = steps;
     const FitResult fit = fit_neural_surface(body, options);
