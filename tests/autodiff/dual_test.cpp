@@ -7,6 +7,8 @@
 #include <string>
 #include <type_traits>
 
+namespace dual_test {
+
 using namespace dsns;
 
 static_assert(std::is_trivially_default_constructible_v<Dual<double, 3>>, "arrays of duals cost nothing to make");
@@ -145,3 +147,5 @@ TEST_CASE("jet2 and nested duals agree on random programs, and with central diff
     CHECK(std::abs(j.g[0] - difference) <= 1e-6 * scale);
   }
 }
+
+}  // namespace dual_test

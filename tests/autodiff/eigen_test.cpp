@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+namespace eigen_test {
+
 using namespace dsns;
 
 TEMPLATE_TEST_CASE("eigen: products, norms and mixed expressions of every scalar", "[autodiff]", (Dual<double, 2>),
@@ -59,3 +61,5 @@ TEST_CASE("eigen: reverse mode through matrix products", "[autodiff]") {
   const Eigen::Vector3d expected = A * Eigen::Vector3d(1, 2, 3);
   for (int k = 0; k < 3; ++k) CHECK(tape.adjoint(x[k]) == expected[k]);
 }
+
+}  // namespace eigen_test

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+namespace functions_test {
+
 using namespace dsns;
 
 namespace {
@@ -451,3 +453,5 @@ TEST_CASE("functions: an active exponent nested at zero keeps its derivative", "
   CHECK(y.g[0].f == 0);
   CHECK(y.g[0].g[0] == Approx(0.5));
 }
+
+}  // namespace functions_test

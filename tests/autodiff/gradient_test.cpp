@@ -4,6 +4,8 @@
 
 #include <Eigen/Dense>
 
+namespace gradient_test {
+
 using namespace dsns;
 
 namespace {
@@ -86,3 +88,5 @@ TEST_CASE("hessian: Rosenbrock's function against its closed form", "[autodiff]"
   CHECK(H(1, 0) == Approx(-120));
   CHECK(H(1, 1) == Approx(200));
 }
+
+}  // namespace gradient_test

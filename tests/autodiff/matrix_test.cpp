@@ -8,6 +8,8 @@
 #include <random>
 #include <string>
 
+namespace matrix_test {
+
 using namespace dsns;
 
 namespace {
@@ -193,3 +195,5 @@ TEST_CASE("matrix tape: shapes that do not fit are named", "[autodiff]") {
     CHECK(std::string(error.what()) == "MatrixTape::product: 2 x 3 times 2 x 2");
   }
 }
+
+}  // namespace matrix_test

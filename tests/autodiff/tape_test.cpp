@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+namespace tape_test {
+
 using namespace dsns;
 
 namespace {
@@ -174,3 +176,5 @@ TEST_CASE("tape: a gradient within a gradient", "[autodiff]") {
   CHECK(slope.f == 12);
   CHECK(outer.adjoint(x) == 12);
 }
+
+}  // namespace tape_test

@@ -5,6 +5,8 @@
 
 #include "catch.hpp"
 
+namespace errors_test {
+
 using namespace dsns;
 
 TEST_CASE("a message is its parts, one after the other", "[errors]") {
@@ -29,3 +31,5 @@ TEMPLATE_TEST_CASE("every exception is a dsns::Error and a std::runtime_error", 
   CHECK_THROWS_AS(require<TestType>(false, "x"), Error);
   CHECK_THROWS_AS(require<TestType>(false, "x"), std::runtime_error);
 }
+
+}  // namespace errors_test

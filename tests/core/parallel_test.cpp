@@ -7,6 +7,8 @@
 
 #include "catch.hpp"
 
+namespace parallel_test {
+
 using namespace dsns;
 
 TEST_CASE("parallel_for visits every index once for any number of threads", "[parallel]") {
@@ -48,3 +50,5 @@ TEST_CASE("parallel_for passes a body's exception on and starts no further work"
   CHECK_THROWS_AS(parallel_for(1'000'000, threads, body), UnusableMesh);
   CHECK(calls < 1'000'000);
 }
+
+}  // namespace parallel_test

@@ -6,6 +6,8 @@
 
 #include "catch.hpp"
 
+namespace spline_test {
+
 using namespace dsns;
 
 namespace {
@@ -98,3 +100,5 @@ TEST_CASE("a spline refuses no knots and times that are not finite", "[spline]")
   CHECK_THROWS_AS(UniformSpline(5).weights(std::nan("")), InvalidArgument);
   CHECK_THROWS_AS(UniformSpline(5).derivative_weights(std::numeric_limits<double>::infinity()), InvalidArgument);
 }
+
+}  // namespace spline_test

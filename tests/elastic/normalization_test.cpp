@@ -3,6 +3,8 @@
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/mesh/sphere_mesh.hpp>
 
+namespace normalization_test {
+
 using namespace dsns;
 
 TEST_CASE("normalising takes place and size out and keeps them", "[elastic]") {
@@ -34,3 +36,5 @@ TEST_CASE("a sequence with a frame of no area is refused", "[elastic]") {
     CHECK(std::string(e.what()).find("vanishing: frame 2") != std::string::npos);
   }
 }
+
+}  // namespace normalization_test

@@ -8,6 +8,8 @@
 #include <dsns/surface/analytic.hpp>
 #include <dsns/surface/sampled.hpp>
 
+namespace spatial_registration_test {
+
 using namespace dsns;
 
 namespace {
@@ -131,3 +133,5 @@ TEST_CASE("stacks of different sizes are refused", "[elastic]") {
   none.levels.clear();
   CHECK_THROWS_AS(register_harmonic(two, two, none), InvalidArgument);
 }
+
+}  // namespace spatial_registration_test

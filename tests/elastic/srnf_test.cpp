@@ -6,6 +6,8 @@
 #include <dsns/geometry/integrals.hpp>
 #include <dsns/surface/analytic.hpp>
 
+namespace srnf_test {
+
 using namespace dsns;
 
 namespace {
@@ -56,3 +58,5 @@ TEST_CASE("the SRNF of a turned and reparametrised surface is O sqrt(J) h(gamma)
 TEST_CASE("an SRNF at a crushed point is refused", "[elastic]") {
   CHECK_THROWS_AS(srnf(Ellipsoid{0, 0, 1}, test::sphere_points()), DegenerateSurface);
 }
+
+}  // namespace srnf_test

@@ -2,6 +2,8 @@
 
 #include <dsns/elastic/geodesic.hpp>
 
+namespace srvf_test {
+
 using namespace dsns;
 
 namespace {
@@ -77,3 +79,5 @@ TEST_CASE("interpolation between columns is linear and exact at them", "[elastic
   CHECK(interpolate(x, 0.75)[0] == Approx(3.5));
   CHECK(interpolate(x, 1)[0] == 5);
 }
+
+}  // namespace srvf_test

@@ -2,6 +2,8 @@
 
 #include <dsns/elastic/temporal_registration.hpp>
 
+namespace temporal_registration_test {
+
 using namespace dsns;
 
 namespace {
@@ -76,3 +78,5 @@ TEST_CASE("curves of different dimensions are refused", "[elastic]") {
   const Curve flat(Eigen::VectorXd::Zero(2), Eigen::MatrixXd::Zero(2, 9));
   CHECK_THROWS_AS(register_temporally(flat, curve({})), InvalidArgument);
 }
+
+}  // namespace temporal_registration_test

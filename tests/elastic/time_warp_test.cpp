@@ -2,6 +2,8 @@
 
 #include <dsns/elastic/time_warp.hpp>
 
+namespace time_warp_test {
+
 using namespace dsns;
 
 TEST_CASE("warps keep their ends, increase, and have the slope of their differences", "[elastic]") {
@@ -55,3 +57,5 @@ TEST_CASE("the mean of a warp and its reversal in the log-slope is near the iden
   for (const double t : {0.25, 0.7})
     CHECK(mean(t) == Approx((integral(t - 0.5) + integral(0.5)) / (2 * integral(0.5))).epsilon(1e-5));
 }
+
+}  // namespace time_warp_test

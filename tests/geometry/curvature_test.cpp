@@ -5,6 +5,8 @@
 #include <dsns/nn/fit.hpp>
 #include <dsns/surface/analytic.hpp>
 
+namespace curvature_test {
+
 using namespace dsns;
 
 namespace {
@@ -73,3 +75,5 @@ TEST_CASE("the curvature of a fitted network approaches the ellipsoid's as the f
   CHECK(errors[2] < 0.7 * errors[1]);
   CHECK(errors[2] < 0.1);
 }
+
+}  // namespace curvature_test

@@ -3,6 +3,8 @@
 #include <dsns/geometry/integrals.hpp>
 #include <dsns/surface/analytic.hpp>
 
+namespace integrals_test {
+
 using namespace dsns;
 
 TEST_CASE("area, volume, centroid and total curvature of a spheroid are the closed forms", "[geometry]") {
@@ -24,3 +26,5 @@ TEST_CASE("Gauss-Bonnet holds for a body with limbs, and measures move with it",
   CHECK(m.total_curvature == Approx(4 * pi).epsilon(1e-6));
   CHECK(m.volume > 0);
 }
+
+}  // namespace integrals_test

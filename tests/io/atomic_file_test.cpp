@@ -9,6 +9,8 @@
 #include <csignal>
 #endif
 
+namespace atomic_file_test {
+
 using namespace dsns;
 namespace fs = std::filesystem;
 
@@ -61,3 +63,5 @@ TEST_CASE("when the disk is full the old file stays and no temporary is left", "
   CHECK(folder.file_count() == 1);
 }
 #endif
+
+}  // namespace atomic_file_test

@@ -6,6 +6,8 @@
 
 #include <filesystem>
 
+namespace gltf_data_test {
+
 using namespace dsns;
 namespace fs = std::filesystem;
 
@@ -98,3 +100,5 @@ TEST_CASE("every clip of every real file can be read", "[io][data]") {
     }
   CHECK(clips >= 34);  // 6 + 12 or 13 + 13 + 3
 }
+
+}  // namespace gltf_data_test

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+namespace gltf_reader_test {
+
 using namespace dsns;
 using test::GltfFixture;
 using test::text;
@@ -281,3 +283,5 @@ TEST_CASE("no damage to a file is worse than an error", "[io]") {
   CHECK(refused > 500);
   CHECK(read_count > 500);  // names, positions and weights may change without harm
 }
+
+}  // namespace gltf_reader_test

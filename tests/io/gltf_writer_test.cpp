@@ -7,6 +7,8 @@
 
 #include <limits>
 
+namespace gltf_writer_test {
+
 using namespace dsns;
 
 namespace {
@@ -154,3 +156,5 @@ TEST_CASE("what cannot be written is refused, and an old file stays", "[io]") {
   CHECK(test::contents(path) == "old");
   CHECK(folder.file_count() == 1);
 }
+
+}  // namespace gltf_writer_test

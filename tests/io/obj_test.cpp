@@ -3,6 +3,8 @@
 
 #include <dsns/io/obj.hpp>
 
+namespace obj_test {
+
 using namespace dsns;
 
 TEST_CASE("an OBJ file's polygons, negative indices and other lines", "[io]") {
@@ -78,3 +80,5 @@ TEST_CASE("the first frame that differs, and broken lines, are named", "[io]") {
   const auto missing = test::complaint<FileError>([&] { read_obj_sequence(folder / "none"); });
   CHECK(contains(missing, "cannot be read as a folder"));
 }
+
+}  // namespace obj_test

@@ -3,6 +3,8 @@
 
 #include <dsns/io/source_name.hpp>
 
+namespace source_name_test {
+
 using namespace dsns;
 
 TEST_CASE("FILE#Clip names a file and a clip", "[io]") {
@@ -24,3 +26,5 @@ TEST_CASE("a file whose own name has a # is found", "[io]") {
   CHECK(parse_source(path.string() + "#Walk").file == path);
   CHECK(parse_source(path.string() + "#Walk").clip == "Walk");
 }
+
+}  // namespace source_name_test

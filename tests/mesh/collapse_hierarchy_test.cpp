@@ -3,6 +3,8 @@
 #include "catch.hpp"
 #include "support/bodies.hpp"
 
+namespace collapse_hierarchy_test {
+
 using namespace dsns;
 
 TEST_CASE("a mesh survives its collapse to a tetrahedron and back", "[collapse]") {
@@ -25,3 +27,5 @@ TEST_CASE("a mesh survives its collapse to a tetrahedron and back", "[collapse]"
     CHECK(mesh.mass(f) == masses[f]);
   }
 }
+
+}  // namespace collapse_hierarchy_test

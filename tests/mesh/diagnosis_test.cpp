@@ -4,6 +4,8 @@
 #include <dsns/mesh/diagnosis.hpp>
 #include <dsns/mesh/sphere_mesh.hpp>
 
+namespace diagnosis_test {
+
 using namespace dsns;
 
 TEST_CASE("a sphere is closed and has genus 0", "[mesh]") {
@@ -89,3 +91,5 @@ TEST_CASE("faces may not name vertices that are not there", "[mesh]") {
   CHECK_THROWS_AS(diagnose(negative, 3), InvalidArgument);
   CHECK(diagnose(Faces(3, 0), 0).closed == false);
 }
+
+}  // namespace diagnosis_test

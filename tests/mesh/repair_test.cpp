@@ -7,6 +7,8 @@
 
 #include <limits>
 
+namespace repair_test {
+
 using namespace dsns;
 
 namespace {
@@ -230,3 +232,5 @@ TEST_CASE("what is no mesh at all", "[mesh]") {
   CHECK_THROWS_AS(repair(broken), InvalidArgument);
   CHECK_THROWS_AS(repair(MeshSequence{}), InvalidArgument);
 }
+
+}  // namespace repair_test

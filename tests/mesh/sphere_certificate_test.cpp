@@ -5,6 +5,8 @@
 #include "catch.hpp"
 #include "support/bodies.hpp"
 
+namespace sphere_certificate_test {
+
 using namespace dsns;
 
 TEST_CASE("the certificate counts turned triangles and double covers", "[certificate]") {
@@ -50,3 +52,5 @@ TEST_CASE("the sign of a determinant is exact where rounding hides it", "[certif
   CHECK(spherical_area(Vec3d::UnitX(), Vec3d::UnitY(), Vec3d::UnitZ()) == Approx(pi / 2));
   CHECK(spherical_area(Vec3d::UnitX(), Vec3d::UnitZ(), Vec3d::UnitY()) == Approx(-pi / 2));
 }
+
+}  // namespace sphere_certificate_test

@@ -4,6 +4,8 @@
 
 #include "catch.hpp"
 
+namespace sphere_energy_test {
+
 using namespace dsns;
 
 TEST_CASE("the energy's derivatives are those of its value", "[sphere_energy]") {
@@ -25,3 +27,5 @@ TEST_CASE("the energy's derivatives are those of its value", "[sphere_energy]") 
   CHECK(model.hessian(1, 1) == Approx((at(0, h) - 2 * at(0, 0) + at(0, -h)) / (h * h)).epsilon(1e-5));
   CHECK(model.hessian(0, 1) == Approx((at(h, h) - at(h, -h) - at(-h, h) + at(-h, -h)) / (4 * h * h)).epsilon(1e-5));
 }
+
+}  // namespace sphere_energy_test

@@ -5,6 +5,8 @@
 #include "catch.hpp"
 #include "support/bodies.hpp"
 
+namespace sphere_location_test {
+
 using namespace dsns;
 
 namespace {
@@ -132,3 +134,5 @@ TEST_CASE("location refuses maps that fold and queries that are not unit vectors
   const TriangleMesh torus = test::torus(6, 5);
   CHECK_THROWS_AS(SphereLocation(torus.vertices.colwise().normalized(), torus.faces), UnusableMesh);
 }
+
+}  // namespace sphere_location_test

@@ -6,6 +6,8 @@
 
 #include "catch.hpp"
 
+namespace sphere_mesh_test {
+
 using namespace dsns;
 
 namespace {
@@ -89,3 +91,5 @@ TEST_CASE("meshes of a surface and of a moving surface sample the functor", "[sp
     CHECK(volume(sequence.frame(k)) == Approx(std::pow(1 + k / 4.0, 3) * volume(sphere)).epsilon(1e-13));
   CHECK_THROWS_AS(sequence_of(growing, sphere, 1), InvalidArgument);
 }
+
+}  // namespace sphere_mesh_test

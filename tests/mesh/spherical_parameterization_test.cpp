@@ -10,6 +10,8 @@
 #include "catch.hpp"
 #include "support/bodies.hpp"
 
+namespace spherical_parameterization_test {
+
 using namespace dsns;
 
 namespace {
@@ -204,3 +206,5 @@ TEST_CASE("real galloping animals map without a flip", "[parameterization][data]
   DSNS_SKIP("DSNS_TEST_DATA_DIR is not set");
 #endif
 }
+
+}  // namespace spherical_parameterization_test

@@ -4,6 +4,8 @@
 
 #include "catch.hpp"
 
+namespace triangle_mesh_test {
+
 using namespace dsns;
 
 namespace {
@@ -98,3 +100,5 @@ TEST_CASE("a sequence counts its vertices and frames", "[triangle_mesh]") {
   CHECK(volume(sequence.frame(1)) == Approx(8));
   CHECK_THROWS(sequence.frame(2));
 }
+
+}  // namespace triangle_mesh_test

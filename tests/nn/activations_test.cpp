@@ -5,6 +5,8 @@
 
 #include <limits>
 
+namespace activations_test {
+
 using namespace dsns;
 
 TEMPLATE_TEST_CASE("activations: columns equal the scalar path with first and second derivatives", "[nn]", float,
@@ -27,3 +29,5 @@ TEMPLATE_TEST_CASE("activations: columns equal the scalar path with first and se
   }
   CHECK(worst <= tolerance);
 }
+
+}  // namespace activations_test

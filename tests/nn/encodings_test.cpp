@@ -4,6 +4,8 @@
 #include <dsns/autodiff/eigen.hpp>
 #include <dsns/nn/encodings.hpp>
 
+namespace encodings_test {
+
 using namespace dsns;
 
 TEST_CASE("encoding: the paper's 80 features", "[nn]") {
@@ -42,3 +44,5 @@ TEST_CASE("encoding: harmonics of degree 1 hold the point itself and time its fr
   CHECK(time[3] == Approx(0).margin(1e-15));
   CHECK(e.time(Dual<double, 1>::variable(0.0, 0))[2].g[0] == Approx(2 * pi));
 }
+
+}  // namespace encodings_test

@@ -3,6 +3,8 @@
 #include <dsns/nn/fit.hpp>
 #include <dsns/surface/analytic.hpp>
 
+namespace fit_test {
+
 using namespace dsns;
 
 namespace {
@@ -124,3 +126,5 @@ TEST_CASE("fit: the paper's configuration has its size", "[nn]") {
   CHECK(o.batch == 80000);
   CHECK(o.learning_rate == 1e-4);
 }
+
+}  // namespace fit_test

@@ -6,6 +6,8 @@
 
 #include <random>
 
+namespace mlp_test {
+
 using namespace dsns;
 
 namespace {
@@ -140,3 +142,5 @@ TEST_CASE("mlp: shapes and inputs that do not fit are refused", "[nn]") {
   shape.width = 0;
   CHECK_THROWS_AS(Mlp<double>(shape), InvalidArgument);
 }
+
+}  // namespace mlp_test

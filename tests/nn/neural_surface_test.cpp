@@ -4,6 +4,8 @@
 
 #include <random>
 
+namespace neural_surface_test {
+
 using namespace dsns;
 
 namespace {
@@ -82,3 +84,5 @@ TEST_CASE("neural surface: jets and velocities against central differences along
 TEST_CASE("neural surface: a network of other inputs is refused", "[nn]") {
   CHECK_THROWS_AS(NeuralSurface(SurfaceEncoding(), Mlp<double>(MlpShape())), InvalidArgument);
 }
+
+}  // namespace neural_surface_test

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace rmsprop_test {
+
 using namespace dsns;
 
 TEST_CASE("rmsprop: the first steps by hand", "[optim]") {
@@ -52,3 +54,5 @@ TEST_CASE("rmsprop: a gradient of another length is refused", "[optim]") {
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(3), g = Eigen::VectorXd::Zero(2);
   CHECK_THROWS_AS(optimizer.step(theta, g, 1), InvalidArgument);
 }
+
+}  // namespace rmsprop_test

@@ -12,6 +12,8 @@
 #include <fstream>
 #include <sstream>
 
+namespace program_test {
+
 #ifdef DSNS_PROGRAM
 
 using namespace dsns;
@@ -123,3 +125,5 @@ TEST_CASE("two bodies go through registration, and the result can be read again"
 }
 
 #endif
+
+}  // namespace program_test

@@ -3,6 +3,8 @@
 
 #include <dsns/sphere/charts.hpp>
 
+namespace charts_test {
+
 using namespace dsns;
 
 TEST_CASE("chart frames are orthonormal and right-handed everywhere", "[sphere]") {
@@ -33,3 +35,5 @@ TEST_CASE("spherical coordinates and angles", "[sphere]") {
   CHECK(angle_between(Vec3d::UnitX(), -Vec3d::UnitX()) == Approx(pi));
   CHECK(angle_between(Vec3d(1, 1e-9, 0), Vec3d::UnitX()) == Approx(1e-9));  // acos of the product would give 0
 }
+
+}  // namespace charts_test

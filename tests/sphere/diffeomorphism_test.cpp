@@ -4,6 +4,8 @@
 #include <dsns/sphere/diffeomorphism.hpp>
 #include <dsns/surface/jets.hpp>
 
+namespace diffeomorphism_test {
+
 using namespace dsns;
 
 TEST_CASE("the identity and rotations are themselves", "[sphere]") {
@@ -67,3 +69,5 @@ TEST_CASE("random diffeomorphisms have the size asked for and repeat", "[sphere]
   CHECK(std::sqrt(square) > 0.3 * size);
   CHECK(random_diffeomorphism(5, 3, size)(q.points) == y);
 }
+
+}  // namespace diffeomorphism_test

@@ -5,6 +5,8 @@
 #include <dsns/sphere/harmonics.hpp>
 #include <dsns/surface/jets.hpp>
 
+namespace harmonics_test {
+
 using namespace dsns;
 
 TEST_CASE("harmonics are orthonormal", "[sphere]") {
@@ -64,3 +66,5 @@ TEST_CASE("harmonics are eigenfunctions of the Laplacian of the sphere", "[spher
       CHECK(y[k].h[0] + y[k].h[2] == Approx(-l[k] * (l[k] + 1) * y[k].f).margin(1e-11));
   }
 }
+
+}  // namespace harmonics_test

@@ -2,6 +2,8 @@
 
 #include <dsns/sphere/quadrature.hpp>
 
+namespace quadrature_test {
+
 using namespace dsns;
 
 TEST_CASE("Gauss-Legendre nodes of three points are the textbook's", "[sphere]") {
@@ -36,3 +38,5 @@ TEST_CASE("the spiral covers the sphere evenly", "[sphere]") {
   CHECK(q.points.rowwise().mean().norm() < 1e-3);
   CHECK((q.points * q.points.transpose() / 2000 - Mat3::Identity() / 3).norm() < 1e-3);
 }
+
+}  // namespace quadrature_test

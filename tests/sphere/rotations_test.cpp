@@ -2,6 +2,8 @@
 
 #include <dsns/sphere/rotations.hpp>
 
+namespace rotations_test {
+
 using namespace dsns;
 
 TEST_CASE("exponential and logarithm of rotations invert each other", "[sphere]") {
@@ -37,3 +39,5 @@ TEST_CASE("every rotation has a grid rotation near it", "[sphere]") {
   }
   CHECK(worst * 180 / pi < 32);  // 600 balls of 19 degrees fill SO(3); no grid covers it with smaller ones
 }
+
+}  // namespace rotations_test

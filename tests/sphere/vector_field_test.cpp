@@ -4,6 +4,8 @@
 #include <dsns/sphere/vector_field.hpp>
 #include <dsns/surface/jets.hpp>
 
+namespace vector_field_test {
+
 using namespace dsns;
 
 namespace {
@@ -57,3 +59,5 @@ TEST_CASE("the rotated gradient of a degree-one harmonic turns the sphere", "[sp
   const Vec3d moved = exponential<double>(v, Vec3d::UnitX());
   CHECK((moved - Vec3d(std::cos(0.7), -std::sin(0.7), 0)).norm() < 1e-14);
 }
+
+}  // namespace vector_field_test

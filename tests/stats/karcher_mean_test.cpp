@@ -2,6 +2,8 @@
 
 #include <dsns/stats/karcher_mean.hpp>
 
+namespace karcher_mean_test {
+
 using namespace dsns;
 
 namespace {
@@ -54,3 +56,5 @@ TEST_CASE("the mean of two sizes of one motion is between them", "[stats]") {
   // q scales with the root of the size: the mean's length is ((1 + sqrt 2) / 2)^2 of the first's
   CHECK(squared_norm(mean.q, grid) == Approx(a * std::pow((1 + std::sqrt(2.0)) / 2, 2)).epsilon(1e-3));
 }
+
+}  // namespace karcher_mean_test

@@ -4,6 +4,8 @@
 #include <dsns/stats/moving_mean.hpp>
 #include <dsns/surface/analytic.hpp>
 
+namespace moving_mean_test {
+
 using namespace dsns;
 
 namespace {
@@ -87,3 +89,5 @@ TEST_CASE("samples, components and curves fit together", "[stats]") {
 TEST_CASE("a mean of nothing is refused", "[stats]") {
   CHECK_THROWS_AS(mean_of_moving(std::vector<LimbedBody>{}, icosphere(0), 5), InvalidArgument);
 }
+
+}  // namespace moving_mean_test

@@ -2,6 +2,8 @@
 
 #include <dsns/stats/pca.hpp>
 
+namespace pca_test {
+
 using namespace dsns;
 
 namespace {
@@ -58,3 +60,5 @@ TEST_CASE("weights that do not fit are refused", "[stats]") {
   CHECK_THROWS_AS(FunctionalPca(snapshots(5, 3), -Eigen::VectorXd::Ones(5)), InvalidArgument);
   CHECK_THROWS_AS(FunctionalPca(snapshots(5, 1), Eigen::VectorXd::Ones(5)), InvalidArgument);
 }
+
+}  // namespace pca_test

@@ -6,6 +6,8 @@
 #include <dsns/surface/any_surface.hpp>
 #include <dsns/surface/harmonic.hpp>
 
+namespace jets_test {
+
 using namespace dsns;
 
 namespace {
@@ -131,3 +133,5 @@ TEST_CASE("a registered surface has the jets of the composed functor", "[surface
   const Mat3X difference = (view.positions(c.s, 0.3 + h) - view.positions(c.s, 0.3 - h)) / (2 * h);
   CHECK((view.velocities(c.s, 0.3) - difference).cwiseAbs().maxCoeff() < 1e-4);  // the warp is a cubic table
 }
+
+}  // namespace jets_test

@@ -5,6 +5,8 @@
 #include "catch.hpp"
 #include "support/bodies.hpp"
 
+namespace sampled_test {
+
 using namespace dsns;
 
 namespace {
@@ -149,3 +151,5 @@ TEST_CASE("a sampled surface refuses frames that do not fit the sphere map", "[s
   body.sequence.frames.clear();
   CHECK_THROWS_AS(SampledSurface(body.sequence, body.sphere.vertices), InvalidArgument);
 }
+
+}  // namespace sampled_test
