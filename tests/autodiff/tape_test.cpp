@@ -58,7 +58,7 @@ TEST_CASE("tape: random programs have the derivatives of forward mode", "[autodi
     const auto z = program(seed, x, y);
     tape.backward(z);
     const D d = program(seed, D::variable(0.8, 0), D::variable(-0.6, 1));
-    CHECK(z.f == d.f);
+    CHECK(std::abs(z.f - d.f) <= 1e-14);  // the compiler may fuse a product with a sum in one and not in the other
     CHECK(std::abs(tape.adjoint(x) - d.g[0]) <= 1e-13 * std::max(1.0, std::abs(d.g[0])));
     CHECK(std::abs(tape.adjoint(y) - d.g[1]) <= 1e-13 * std::max(1.0, std::abs(d.g[1])));
   }

@@ -6,6 +6,16 @@ namespace time_warp_test {
 
 using namespace dsns;
 
+namespace {
+
+Eigen::VectorXd vector(std::initializer_list<double> values) {
+  Eigen::VectorXd v(static_cast<Index>(values.size()));
+  std::copy(values.begin(), values.end(), v.begin());
+  return v;
+}
+
+}  // namespace
+
 TEST_CASE("warps keep their ends, increase, and have the slope of their differences", "[elastic]") {
   const TimeWarp warp = random_warp(3, 0.8);
   CHECK(warp(0) == 0);
@@ -30,14 +40,14 @@ TEST_CASE("composition with the inverse is the identity", "[elastic]") {
 }
 
 TEST_CASE("what is not a warp is refused", "[elastic]") {
-  CHECK_THROWS_AS(TimeWarp(Eigen::Vector3d(0, 0.5, 0.9), Eigen::Vector3d(1, 1, 1)), InvalidArgument);
-  CHECK_THROWS_AS(TimeWarp(Eigen::Vector3d(0, -0.1, 1), Eigen::Vector3d(1, 1, 1)), InvalidArgument);
-  CHECK_THROWS_AS(TimeWarp(Eigen::Vector3d(0, 0.5, 1), Eigen::Vector3d(1, 0, 1)), InvalidArgument);
-  CHECK_THROWS_AS(TimeWarp(Eigen::Vector3d(0, 0.5, 1), Eigen::Vector2d(1, 1)), InvalidArgument);
+  CHECK_THROWS_AS(TimeWarp(vector({0, 0.5, 0.9}), vector({1, 1, 1})), InvalidArgument);
+  CHECK_THROWS_AS(TimeWarp(vector({0, -0.1, 1}), vector({1, 1, 1})), InvalidArgument);
+  CHECK_THROWS_AS(TimeWarp(vector({0, 0.5, 1}), vector({1, 0, 1})), InvalidArgument);
+  CHECK_THROWS_AS(TimeWarp(vector({0, 0.5, 1}), vector({1, 1})), InvalidArgument);
 }
 
 TEST_CASE("steep data are interpolated monotonically", "[elastic]") {
-  const TimeWarp warp(Eigen::Vector4d(0, 0.01, 0.99, 1), Eigen::Vector4d(5, 5, 5, 5));
+  const TimeWarp warp(vector({0, 0.01, 0.99, 1}), vector({5, 5, 5, 5}));
   double last = 0;
   for (int k = 1; k <= 300; ++k) {
     const double value = warp(k / 300.0);
