@@ -6,7 +6,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
 namespace dsns {
@@ -154,8 +153,12 @@ class SpatialProblem {
       matrix.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
       rights[std::size_t(chunk)] = std::move(right);
     });
-    system.matrix = std::accumulate(matrices.begin() + 1, matrices.end(), matrices.front());
-    system.right = std::accumulate(rights.begin() + 1, rights.end(), rights.front());
+    system.matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
+    system.right = Eigen::VectorXd::Zero(unknowns);
+    for (std::size_t chunk = 0; chunk < matrices.size(); ++chunk) {
+      system.matrix += matrices[chunk];
+      system.right += rights[chunk];
+    }
     return system;
   }
 
