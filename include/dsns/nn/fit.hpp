@@ -23,7 +23,7 @@ namespace dsns {
 
 /// The defaults gave the smallest error in 15 CPU-seconds on a galloping horse; many small steps matter most.
 struct FitOptions {
-  SurfaceEncoding encoding;
+  SurfaceEncoding encoding = {};
   int width = 64;
   int blocks = 2;
   Activation activation = Activation::silu;
@@ -34,11 +34,11 @@ struct FitOptions {
   int steps = 12000;
   double seconds = 0;           ///< of wall time for the steps; 0: no limit. With a limit runs are not repeatable
   double learning_rate = 1e-3;  ///< at the start; falls to 0 along half a cosine
-  RmsPropOptions rmsprop;
+  RmsPropOptions rmsprop = {};
   std::uint64_t seed = 0;
   int threads = 1;  ///< the result does not depend on it
   /// Where points are drawn: n unit vectors, 3 x n. Empty: uniformly on the sphere.
-  std::function<Mat3X(int n, std::mt19937_64& random)> sampler;
+  std::function<Mat3X(int n, std::mt19937_64& random)> sampler = {};
 };
 
 enum class FitStop { steps, seconds };
