@@ -1,7 +1,12 @@
 // Registration against the truth: a body is turned, its sphere warped by about 5 degrees and its clock bent; registration,
 // which is told none of this, must find the three again.  known_warp [FILE.glb#Clip]; without a file, a body from a formula.
-#include <dsns/dsns.hpp>
-#include <dsns/io/gltf.hpp>
+#include <dsns/io/gltf_reader.hpp>
+#include <dsns/io/source_name.hpp>
+#include <dsns/mesh/sphere_mesh.hpp>
+#include <dsns/mesh/spherical_parameterization.hpp>
+#include <dsns/stats/co_registration.hpp>
+#include <dsns/surface/analytic.hpp>
+#include <dsns/surface/sampled.hpp>
 
 #include <iostream>
 
