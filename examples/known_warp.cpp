@@ -2,6 +2,8 @@
 // which is told none of this, must find the three again.  known_warp [FILE.glb#Clip]; without a file, a body from a formula.
 #include <dsns/io/gltf_reader.hpp>
 #include <dsns/io/source_name.hpp>
+#include <dsns/elastic/normalization.hpp>
+#include <dsns/mesh/repair.hpp>
 #include <dsns/mesh/sphere_mesh.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
 #include <dsns/stats/co_registration.hpp>

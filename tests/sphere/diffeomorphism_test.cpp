@@ -50,6 +50,19 @@ TEST_CASE("the inverse brings points back", "[sphere]") {
   CHECK((gamma(gamma.inverse(s)) - s).cwiseAbs().maxCoeff() < 1e-12);
 }
 
+TEST_CASE("a composition is one after the other, rotations and fields alike", "[sphere]") {
+  const Mat3X s = test::sphere_points();
+  const auto warped = [](const Vec3d& turn, std::uint64_t seed) {
+    SphereDiffeomorphism gamma(rotation_exp(turn));
+    const SphereDiffeomorphism random = random_diffeomorphism(seed, 4, 0.3);
+    for (const auto& v : random.increments()) gamma.append(v);
+    return gamma;
+  };
+  const SphereDiffeomorphism outer = warped(Vec3d(1, 0.3, -2), 5), inner = warped(Vec3d(0.1, -1.3, 0.7), 6);
+  CHECK((compose(outer, inner)(s) - outer(inner(s))).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((compose(inner, outer)(s) - outer(inner(s))).cwiseAbs().maxCoeff() > 0.1);
+}
+
 TEST_CASE("a map with a fold is not certified", "[sphere]") {
   SphereVectorField v = SphereVectorField::zero(4);
   v.a[20] = 1.5;

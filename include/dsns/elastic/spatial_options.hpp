@@ -11,6 +11,7 @@ namespace dsns {
 enum class RotationSearch {
   full,     ///< any turn of the body and any turn of its sphere: for one body, or bodies placed at will
   upright,  ///< bodies stand alike (same up, same heading): turns of the sphere only, scored on positions
+  none,     ///< the surfaces correspond roughly already: start from the identity
 };
 
 /// One stage, coarse to fine: fields of `field_degree` move surfaces cut at `surface_degree` and smoothed by the heat kernel.

@@ -123,30 +123,24 @@ inline SphereDiffeomorphism certified(const Mat3& R, std::vector<SphereVectorFie
 }  // namespace detail
 
 /// Registers surfaces already projected on harmonics; surface k of the second stack corresponds to surface k of the first.
-/// start    a known correspondence to refine; without it the rotation search of the options
 /// returns  O and gamma with gamma certified on a grid; the identity where nothing better was found
 /// accuracy a degree-3 warp of 5 degrees with a rotation is recovered to 0.01 degrees [elastic/spatial_registration_test]
 /// source   Gauss-Newton on the SRNF distance of Jermyn et al. 2012, fields as in Kurtek et al. 2010
 inline SpatialResult register_harmonic(std::span<const HarmonicSurface> first, std::span<const HarmonicSurface> second,
-                                       const SpatialOptions& options = {}, const SpatialResult* start = nullptr,
-                                       const Progress& progress = {}) {
+                                       const SpatialOptions& options = {}, const Progress& progress = {}) {
   require(!options.levels.empty(), "register_spatially: no levels, give at least one");
   const detail::SpatialPair pair(first, second, options);
   const SphereQuadrature q = sphere_quadrature(options.latitudes);
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(q.size());
 
-  report(progress, "rotation search", 0);
-  const detail::RotationCandidate turn = start ? detail::RotationCandidate{start->gamma.rotation(), start->rotation, 0}
-                                               : detail::best_rotation(pair, options);
+  detail::RotationCandidate turn{Mat3::Identity(), Mat3::Identity(), 0};
+  if (options.search != RotationSearch::none) {
+    report(progress, "rotation search", 0);
+    turn = detail::best_rotation(pair, options);
+  }
   std::vector<SphereVectorField> fields;
-  if (start) fields = start->gamma.increments();
   Mat3X y = (turn.R * q.points).colwise().normalized();
   Eigen::VectorXd J = ones;
-  if (start) {
-    const SphereDisplacement at = start->gamma.displacement(charts_at(q.points));
-    y = at.y;
-    J = at.J;
-  }
 
   SpatialResult result;
   SpatialSummary& summary = result.summary;
@@ -182,6 +176,31 @@ inline SpatialResult register_harmonic(std::span<const HarmonicSurface> first, s
   return result;
 }
 
+/// Refines a registration. `pulled` are projections of the second surfaces as registered so far, O f(gamma(s)), so that what
+/// the projection takes away is the same on both sides: projecting first and warping afterwards is not, and leaves an error
+/// that grows with the warp.
+/// returns  the composition of both; the former registration where no step helps or the composition would fold
+inline SpatialResult refine_harmonic(std::span<const HarmonicSurface> first, std::span<const HarmonicSurface> pulled,
+                                     const SpatialResult& former, SpatialOptions options = {},
+                                     const Progress& progress = {}) {
+  options.search = RotationSearch::none;
+  require(!options.levels.empty(), "refine_harmonic: no levels, give at least one");
+  const int finest = options.levels.back().surface_degree;
+  std::erase_if(options.levels, [&](const SpatialLevel& level) { return level.surface_degree < finest; });
+  const SpatialResult step = register_harmonic(first, pulled, options, progress);
+  SpatialResult result{step.rotation * former.rotation, compose(former.gamma, step.gamma), former.summary};
+  result.summary.min_jacobian = certify(result.gamma).min_jacobian;
+  if (!(result.summary.min_jacobian > 0)) {
+    result = former;
+    result.summary.stop += "; a refinement that folds was dropped";
+  } else {
+    result.summary.energy_after = step.summary.energy_after;
+    result.summary.steps += step.summary.steps;
+    result.summary.energies.insert(result.summary.energies.end(), step.summary.energies.begin(), step.summary.energies.end());
+  }
+  return result;
+}
+
 /// Degree of the harmonics that the levels of the options ask for.
 inline int surface_degree(const SpatialOptions& options) {
   int degree = 1;
@@ -195,7 +214,7 @@ SpatialResult register_spatially(const S1& first, const S2& second, const Spatia
                                  const Progress& progress = {}) {
   const int degree = surface_degree(options);
   const std::vector<HarmonicSurface> a{project_on_harmonics(first, degree)}, b{project_on_harmonics(second, degree)};
-  return register_harmonic(a, b, options, nullptr, progress);
+  return register_harmonic(a, b, options, progress);
 }
 
 }  // namespace dsns

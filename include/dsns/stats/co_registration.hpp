@@ -14,7 +14,7 @@ struct RegistrationOptions {
   TemporalOptions temporal;
   PcaOptions pca;
   int spatial_times = 5;  ///< spatial registration compares the surfaces at this many times
-  int rounds = 2;         ///< the second round compares at times that the first found to correspond
+  int rounds = 3;         ///< each further round compares the surfaces as registered so far, in space and in time
   int snapshots = 32;     ///< times a sequence gives to the principal components
   int velocities = 128;   ///< intervals at which its velocity is evaluated
 };
@@ -74,15 +74,18 @@ inline Curve shape_curve(const SurfaceSamples& samples, const FunctionalPca& pca
 
 namespace detail {
 
-/// Projections on harmonics at the images of equidistant times.
+/// Projections of O F(gamma(s), zeta(t)) on harmonics at equidistant times t.
 template <AnimatedSurface F>
-std::vector<HarmonicSurface> harmonic_stack(const F& surface, const TimeWarp& zeta,
+std::vector<HarmonicSurface> harmonic_stack(const F& surface, const SpatialResult& registration, const TimeWarp& zeta,
                                             const RegistrationOptions& options) {
   const int times = std::max(1, options.spatial_times), degree = surface_degree(options.spatial);
+  const SphereQuadrature q = projection_nodes(degree);
+  const Mat3X y = registration.gamma(q.points);
   std::vector<HarmonicSurface> stack(std::size_t(times), HarmonicSurface(Eigen::MatrixX3d::Zero(1, 3)));
   parallel_for(times, options.spatial.threads, [&](int k) {
     const double t = times > 1 ? double(k) / (times - 1) : 0.0;
-    stack[std::size_t(k)] = project_on_harmonics(at_time(surface, zeta(t)), degree);
+    const Mat3X values = registration.rotation * positions(surface, y, zeta(t));
+    stack[std::size_t(k)] = project_on_harmonics(values, q, degree);
   });
   return stack;
 }
@@ -95,12 +98,12 @@ template <AnimatedSurface F1, AnimatedSurface F2>
 MovingRegistration register_moving(const F1& first, const F2& second, const TriangleMesh& sphere,
                                    const RegistrationOptions& options = {}, const Progress& progress = {}) {
   MovingRegistration result;
-  const auto target = detail::harmonic_stack(first, {}, options);
+  const auto target = detail::harmonic_stack(first, {}, {}, options);
   const SurfaceSamples target_samples = sample(first, {}, sphere.vertices, options);
   for (int round = 0; round < std::max(1, options.rounds); ++round) {
-    const auto moved = detail::harmonic_stack(second, result.temporal.warp, options);
-    result.spatial =
-        register_harmonic(target, moved, options.spatial, round == 0 ? nullptr : &result.spatial, progress);
+    const auto moved = detail::harmonic_stack(second, result.spatial, result.temporal.warp, options);
+    result.spatial = round == 0 ? register_harmonic(target, moved, options.spatial, progress)
+                                : refine_harmonic(target, moved, result.spatial, options.spatial, progress);
     const std::vector<SurfaceSamples> samples{target_samples, sample(second, result.spatial, sphere.vertices, options)};
     const FunctionalPca pca = joint_pca(samples, sphere.faces, options.pca);
     result.temporal = register_temporally(shape_curve(samples[0], pca), shape_curve(samples[1], pca), options.temporal);

@@ -70,13 +70,20 @@ class HarmonicSurface {
   int degree_;
 };
 
-/// Projection of any surface on the harmonics up to `degree` by quadrature: exact where the surface is band-limited to
-/// 2n - 1 - degree for n nodes of latitude (default: n = 2 degree + 8).
-template <Surface S>
-HarmonicSurface project_on_harmonics(const S& surface, int degree, int latitudes = 0) {
-  const SphereQuadrature q = sphere_quadrature(latitudes > 0 ? latitudes : 2 * degree + 8);
+/// Projection of positions at the nodes of a quadrature, 3 x n, on the harmonics up to `degree`.
+inline HarmonicSurface project_on_harmonics(const Mat3X& values, const SphereQuadrature& q, int degree) {
   const Eigen::MatrixXd y = harmonics(q.points, degree);
-  return HarmonicSurface(y.transpose() * q.weights.asDiagonal() * positions(surface, q.points).transpose());
+  return HarmonicSurface(y.transpose() * q.weights.asDiagonal() * values.transpose());
+}
+
+/// Nodes for projections up to `degree`: exact for surfaces that are band-limited to 3 degree + 15.
+inline SphereQuadrature projection_nodes(int degree) { return sphere_quadrature(2 * degree + 8); }
+
+/// Projection of any surface on the harmonics up to `degree` by quadrature.
+template <Surface S>
+HarmonicSurface project_on_harmonics(const S& surface, int degree) {
+  const SphereQuadrature q = projection_nodes(degree);
+  return project_on_harmonics(positions(surface, q.points), q, degree);
 }
 
 static_assert(Surface<HarmonicSurface>);
