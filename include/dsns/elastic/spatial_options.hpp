@@ -24,8 +24,8 @@ struct SpatialLevel {
 
 struct SpatialOptions {
   RotationSearch search = RotationSearch::full;
-  std::vector<SpatialLevel> levels = {{1, 6, 0.05, 0.5},  {2, 6, 0.05, 0.5},   {3, 8, 0.03, 0.5},  {4, 8, 0.02, 0.5},
-                                      {6, 10, 0.01, 0.5}, {8, 12, 0.004, 0.5}, {10, 16, 0.0, 0.5}, {10, 16, 0.0, 0.0}};
+  std::vector<SpatialLevel> levels = {{1, 6, 0.05, 0.5},  {2, 6, 0.05, 0.5},   {3, 8, 0.03, 0.5}, {4, 8, 0.02, 0.5},
+                                      {6, 10, 0.01, 0.5}, {8, 12, 0.004, 0.5}, {10, 16, 0.0, 0.5}};
   int steps_per_level = 8;
   int latitudes = 24;              ///< quadrature of latitudes x 2 latitudes nodes
   int rotations = 600;             ///< candidates of the search
@@ -38,7 +38,8 @@ struct SpatialOptions {
   int threads = 1;
 };
 
-/// Energies are |h1 - O (h2 * gamma)|^2 of the last level's fields, squared length unit.
+/// Energies are |h1 - O (h2 * gamma)|^2 of the SRNFs h at the last level's degree, squared length unit, whatever weight the
+/// levels give to positions.
 struct SpatialSummary {
   double energy_before = 0;  ///< at the identity
   double energy_after = 0;

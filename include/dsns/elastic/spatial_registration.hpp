@@ -159,13 +159,22 @@ inline SpatialResult register_harmonic(std::span<const HarmonicSurface> first, s
   result.gamma = detail::certified(turn.R, std::move(fields), summary);
   result.rotation = O;
 
-  const detail::SpatialProblem last = pair.problem(options.levels.back(), q);
-  const SphereDisplacement end = result.gamma.displacement(charts_at(q.points));
-  summary.norm = last.norm();
-  summary.energy_before = last.at(q.points, ones, Mat3::Identity()).energy;
-  summary.energy_after = last.at(end.y, end.J, O).energy;
+  SpatialLevel level = options.levels.back();
+  const auto energies = [&] {
+    const detail::SpatialProblem problem = pair.problem(level, q);
+    const SphereDisplacement end = result.gamma.displacement(charts_at(q.points));
+    summary.norm = problem.norm();
+    summary.energy_before = problem.at(q.points, ones, Mat3::Identity()).energy;
+    summary.energy_after = problem.at(end.y, end.J, O).energy;
+  };
+  energies();
+  const bool better = summary.energy_after <= summary.energy_before;
+  if (level.position_weight != 0) {
+    level.position_weight = 0;
+    energies();
+  }
   summary.steps = static_cast<int>(result.gamma.increments().size());
-  if (summary.energy_after > summary.energy_before) {
+  if (!better) {
     result = {Mat3::Identity(), SphereDiffeomorphism(), summary};
     result.summary.energy_after = summary.energy_before;
     result.summary.min_jacobian = 1;

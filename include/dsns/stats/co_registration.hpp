@@ -14,7 +14,7 @@ struct RegistrationOptions {
   TemporalOptions temporal;
   PcaOptions pca;
   int spatial_times = 5;  ///< spatial registration compares the surfaces at this many times
-  int rounds = 3;         ///< each further round compares the surfaces as registered so far, in space and in time
+  int rounds = 2;         ///< each further round compares the surfaces as registered so far, in space and in time
   int snapshots = 32;     ///< times a sequence gives to the principal components
   int velocities = 128;   ///< intervals at which its velocity is evaluated
 };
