@@ -7,7 +7,7 @@
 namespace dsns {
 
 struct KarcherOptions {
-  int iterations = 10;
+  int iterations = 30;
   double tolerance = 1e-4;  ///< converged when an iteration lowers the energy by less than this share of it
   TemporalOptions temporal;
   int threads = 1;
