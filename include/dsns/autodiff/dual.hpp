@@ -6,10 +6,11 @@
 ///   auto x = Dual<double, 1>::variable(0.5, 0);
 ///   auto y = exp(sin(x));                            // y.f = value, y.g[0] = dy/dx
 #include <dsns/autodiff/functions.hpp>
+#include <dsns/autodiff/tangents.hpp>
 
-#include <array>
 #include <compare>
 #include <cstddef>
+#include <utility>
 
 namespace dsns {
 
@@ -19,38 +20,26 @@ struct Dual {
   using Inner = T;
 
   T f;
-  std::array<T, std::size_t(N)> g;
+  Tangents<T, N> g;
 
   Dual() = default;
   /// A constant.
   template <class S>
-  requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) Dual(const S& s)
-      : f(static_cast<T>(s)) {
-    g.fill(T(0));
-  }
-  Dual(const T& f_, const std::array<T, std::size_t(N)>& g_) : f(f_), g(g_) {}
+  requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) DSNS_INLINE Dual(const S& s)
+      : f(static_cast<T>(s)), g(Tangents<T, N>::zero()) {}
+  DSNS_INLINE Dual(const T& f_, const Tangents<T, N>& g_) : f(f_), g(g_) {}
   /// The k-th independent variable: derivative 1 in direction k, 0 in the others.
-  static Dual variable(const T& x0, int k) {
-    Dual x(x0);
-    x.g[static_cast<std::size_t>(k)] = T(1);
-    return x;
-  }
+  DSNS_INLINE static Dual variable(const T& x0, int k) { return Dual(x0, Tangents<T, N>::unit(k)); }
 
   /// w(x) for a function with value w and derivative d at x.f.
   template <class Second>
-  friend Dual chain(const Dual& x, const T& w, const T& d, const Second&) {
-    Dual r;
-    r.f = w;
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = d * x.g[i];
-    return r;
+  DSNS_INLINE friend Dual chain(const Dual& x, const T& w, const T& d, const Second&) {
+    return Dual(w, each([&](const auto& dx) { return d * dx; }, x.g));
   }
   /// w(x, y) for a function with value w and partial derivatives wx, wy.
   template <class Second>
-  friend Dual chain(const Dual& x, const Dual& y, const T& w, const T& wx, const T& wy, const Second&) {
-    Dual r;
-    r.f = w;
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = wx * x.g[i] + wy * y.g[i];
-    return r;
+  DSNS_INLINE friend Dual chain(const Dual& x, const Dual& y, const T& w, const T& wx, const T& wy, const Second&) {
+    return Dual(w, each([&](const auto& dx, const auto& dy) { return wx * dx + wy * dy; }, x.g, y.g));
   }
   friend bool derivatives_vanish(const Dual& x) {
     bool zero = detail::inert(x.f);
@@ -58,87 +47,75 @@ struct Dual {
     return zero;
   }
 
-  friend Dual operator+(const Dual& a) { return a; }
-  friend Dual operator-(const Dual& a) {
-    Dual r;
-    r.f = -a.f;
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = -a.g[i];
-    return r;
+  DSNS_INLINE friend Dual operator+(const Dual& a) { return a; }
+  DSNS_INLINE friend Dual operator-(const Dual& a) {
+    return Dual(-a.f, each([](const auto& da) { return -da; }, a.g));
   }
-  friend Dual operator+(const Dual& a, const Dual& b) {
-    Dual r;
-    r.f = a.f + b.f;
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = a.g[i] + b.g[i];
-    return r;
+  DSNS_INLINE friend Dual operator+(const Dual& a, const Dual& b) {
+    return Dual(a.f + b.f, each([](const auto& da, const auto& db) { return da + db; }, a.g, b.g));
   }
-  friend Dual operator-(const Dual& a, const Dual& b) {
-    Dual r;
-    r.f = a.f - b.f;
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = a.g[i] - b.g[i];
-    return r;
+  DSNS_INLINE friend Dual operator-(const Dual& a, const Dual& b) {
+    return Dual(a.f - b.f, each([](const auto& da, const auto& db) { return da - db; }, a.g, b.g));
   }
-  friend Dual operator*(const Dual& a, const Dual& b) {
-    Dual r;
-    r.f = a.f * b.f;
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = a.f * b.g[i] + b.f * a.g[i];
-    return r;
+  DSNS_INLINE friend Dual operator*(const Dual& a, const Dual& b) {
+    return Dual(a.f * b.f, each([&](const auto& da, const auto& db) { return a.f * db + b.f * da; }, a.g, b.g));
   }
-  friend Dual operator/(const Dual& a, const Dual& b) {
-    Dual r;
-    const T inverse = 1 / b.f;
-    r.f = a.f / b.f;
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = (a.g[i] - r.f * b.g[i]) * inverse;
-    return r;
+  DSNS_INLINE friend Dual operator/(const Dual& a, const Dual& b) {
+    const T inverse = 1 / b.f, q = a.f / b.f;
+    return Dual(q, each([&](const auto& da, const auto& db) { return (da - q * db) * inverse; }, a.g, b.g));
   }
 
   template <PassiveFor<Dual> S>
-  friend Dual operator+(const Dual& a, const S& s) {
+  DSNS_INLINE friend Dual operator+(const Dual& a, const S& s) {
     return Dual(a.f + detail::constant<Dual>(s), a.g);
   }
   template <PassiveFor<Dual> S>
-  friend Dual operator+(const S& s, const Dual& a) {
+  DSNS_INLINE friend Dual operator+(const S& s, const Dual& a) {
     return a + s;
   }
   template <PassiveFor<Dual> S>
-  friend Dual operator-(const Dual& a, const S& s) {
+  DSNS_INLINE friend Dual operator-(const Dual& a, const S& s) {
     return Dual(a.f - detail::constant<Dual>(s), a.g);
   }
   template <PassiveFor<Dual> S>
-  friend Dual operator-(const S& s, const Dual& a) {
+  DSNS_INLINE friend Dual operator-(const S& s, const Dual& a) {
     Dual r = -a;
     r.f = detail::constant<Dual>(s) - a.f;
     return r;
   }
   template <PassiveFor<Dual> S>
-  friend Dual operator*(const Dual& a, const S& s) {
+  DSNS_INLINE friend Dual operator*(const Dual& a, const S& s) {
     const auto& c = detail::constant<Dual>(s);
-    Dual r;
-    r.f = a.f * c;
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = a.g[i] * c;
-    return r;
+    return Dual(a.f * c, each([&](const auto& da) { return da * c; }, a.g));
   }
   template <PassiveFor<Dual> S>
-  friend Dual operator*(const S& s, const Dual& a) {
+  DSNS_INLINE friend Dual operator*(const S& s, const Dual& a) {
     return a * s;
   }
   template <PassiveFor<Dual> S>
-  friend Dual operator/(const Dual& a, const S& s) {
+  DSNS_INLINE friend Dual operator/(const Dual& a, const S& s) {
     const auto& c = detail::constant<Dual>(s);
-    Dual r;
-    r.f = a.f / c;
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = a.g[i] / c;
-    return r;
+    return Dual(a.f / c, each([&](const auto& da) { return da / c; }, a.g));
   }
   template <PassiveFor<Dual> S>
-  friend Dual operator/(const S& s, const Dual& a) {
+  DSNS_INLINE friend Dual operator/(const S& s, const Dual& a) {
     const T q = detail::constant<Dual>(s) / a.f;
     return chain(a, q, -q / a.f, [] {});
   }
 
-  Dual& operator+=(const Dual& b) { return *this = *this + b; }
-  Dual& operator-=(const Dual& b) { return *this = *this - b; }
-  Dual& operator*=(const Dual& b) { return *this = *this * b; }
-  Dual& operator/=(const Dual& b) { return *this = *this / b; }
+  /// By value, so that a temporary's entries are added as the temporaries they are (see Var).
+  DSNS_INLINE Dual& operator+=(Dual b) {
+    f += std::move(b.f);
+    g += std::move(b.g);
+    return *this;
+  }
+  DSNS_INLINE Dual& operator-=(Dual b) {
+    f -= std::move(b.f);
+    g -= std::move(b.g);
+    return *this;
+  }
+  DSNS_INLINE Dual& operator*=(const Dual& b) { return *this = *this * b; }
+  DSNS_INLINE Dual& operator/=(const Dual& b) { return *this = *this / b; }
 
   /// Comparisons see values only.
   friend bool operator==(const Dual& a, const Dual& b) { return a.f == b.f; }
@@ -150,6 +127,12 @@ struct Dual {
   template <PassiveFor<Dual> S>
   friend auto operator<=>(const Dual& a, const S& s) {
     return a.f <=> detail::constant<Dual>(s);
+  }
+
+ private:
+  template <class Op, class... X>
+  DSNS_INLINE static Tangents<T, N> each(const Op& op, const X&... x) {
+    return Tangents<T, N>::each(op, x...);
   }
 };
 

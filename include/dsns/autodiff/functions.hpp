@@ -134,18 +134,48 @@ X log10(const X& x) {
   return chain(x, log10(x.f), d, [&] { return -d / x.f; });
 }
 
-template <Differentiable X>
-X sin(const X& x) {
+/// Sine and cosine of one angle.
+template <class T>
+struct SineCosine {
+  T sine, cosine;
+};
+#if defined(__clang__) && defined(__GLIBC__) && defined(_GNU_SOURCE)
+namespace detail {
+
+// g++ joins the sine and the cosine of one angle, and all calls for it, by itself; clang joins calls of a function that is
+// declared to depend on its argument only.
+[[gnu::const, gnu::noinline]] inline SineCosine<double> sine_and_cosine(double x) {
+  SineCosine<double> r;
+  ::sincos(x, &r.sine, &r.cosine);
+  return r;
+}
+
+}  // namespace detail
+#endif
+
+template <class T>
+DSNS_INLINE SineCosine<T> sincos(const T& x) {
+#if defined(__clang__) && defined(__GLIBC__) && defined(_GNU_SOURCE)
+  if constexpr (std::is_same_v<T, double>) return detail::sine_and_cosine(x);
+#endif
   using std::cos, std::sin;
-  const auto s = sin(x.f);
-  return chain(x, s, cos(x.f), [&] { return -s; });
+  return {sin(x), cos(x)};
+}
+template <Differentiable X>
+DSNS_INLINE SineCosine<X> sincos(const X& x) {
+  const auto a = sincos(x.f);
+  return {chain(x, a.sine, a.cosine, [&] { return -a.sine; }), chain(x, a.cosine, -a.sine, [&] { return -a.cosine; })};
 }
 
 template <Differentiable X>
+X sin(const X& x) {
+  const auto a = sincos(x.f);
+  return chain(x, a.sine, a.cosine, [&] { return -a.sine; });
+}
+template <Differentiable X>
 X cos(const X& x) {
-  using std::cos, std::sin;
-  const auto c = cos(x.f);
-  return chain(x, c, -sin(x.f), [&] { return -c; });
+  const auto a = sincos(x.f);
+  return chain(x, a.cosine, -a.sine, [&] { return -a.cosine; });
 }
 
 template <Differentiable X>

@@ -9,6 +9,7 @@
 #include <array>
 #include <compare>
 #include <cstddef>
+#include <utility>
 
 namespace dsns {
 
@@ -25,7 +26,7 @@ struct Jet2 {
   Jet2() = default;
   /// A constant.
   template <class S>
-  requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) Jet2(const S& s)
+  requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) DSNS_INLINE Jet2(const S& s)
       : f(static_cast<T>(s)) {
     g.fill(T(0));
     h.fill(T(0));
@@ -46,7 +47,7 @@ struct Jet2 {
 
   /// w(x) for a function with value w, derivative d and second derivative second() at x.f.
   template <class Second>
-  friend Jet2 chain(const Jet2& x, const T& w, const T& d, const Second& second) {
+  DSNS_INLINE friend Jet2 chain(const Jet2& x, const T& w, const T& d, const Second& second) {
     const T d2 = second();
     Jet2 r;
     r.f = w;
@@ -59,7 +60,7 @@ struct Jet2 {
   }
   /// w(x, y) for a function with value w, partial derivatives wx, wy and second derivatives second() = {xx, xy, yy}.
   template <class Second>
-  friend Jet2 chain(const Jet2& x, const Jet2& y, const T& w, const T& wx, const T& wy, const Second& second) {
+  DSNS_INLINE friend Jet2 chain(const Jet2& x, const Jet2& y, const T& w, const T& wx, const T& wy, const Second& second) {
     const auto s = second();
     Jet2 r;
     r.f = w;
@@ -77,17 +78,17 @@ struct Jet2 {
     return zero;
   }
 
-  friend Jet2 operator+(const Jet2& a) { return a; }
-  friend Jet2 operator-(const Jet2& a) {
+  DSNS_INLINE friend Jet2 operator+(const Jet2& a) { return a; }
+  DSNS_INLINE friend Jet2 operator-(const Jet2& a) {
     return each(a, [](const T& x) { return -x; });
   }
-  friend Jet2 operator+(const Jet2& a, const Jet2& b) {
+  DSNS_INLINE friend Jet2 operator+(const Jet2& a, const Jet2& b) {
     return each(a, b, [](const T& x, const T& y) { return x + y; });
   }
-  friend Jet2 operator-(const Jet2& a, const Jet2& b) {
+  DSNS_INLINE friend Jet2 operator-(const Jet2& a, const Jet2& b) {
     return each(a, b, [](const T& x, const T& y) { return x - y; });
   }
-  friend Jet2 operator*(const Jet2& a, const Jet2& b) {
+  DSNS_INLINE friend Jet2 operator*(const Jet2& a, const Jet2& b) {
     Jet2 r;
     r.f = a.f * b.f;
     for (std::size_t i = 0, m = 0; i < N; ++i) {
@@ -96,7 +97,7 @@ struct Jet2 {
     }
     return r;
   }
-  friend Jet2 operator/(const Jet2& a, const Jet2& b) {
+  DSNS_INLINE friend Jet2 operator/(const Jet2& a, const Jet2& b) {
     Jet2 r;
     const T inverse = 1 / b.f;
     r.f = a.f / b.f;
@@ -108,47 +109,58 @@ struct Jet2 {
   }
 
   template <PassiveFor<Jet2> S>
-  friend Jet2 operator+(const Jet2& a, const S& s) {
+  DSNS_INLINE friend Jet2 operator+(const Jet2& a, const S& s) {
     return Jet2(a.f + detail::constant<Jet2>(s), a.g, a.h);
   }
   template <PassiveFor<Jet2> S>
-  friend Jet2 operator+(const S& s, const Jet2& a) {
+  DSNS_INLINE friend Jet2 operator+(const S& s, const Jet2& a) {
     return a + s;
   }
   template <PassiveFor<Jet2> S>
-  friend Jet2 operator-(const Jet2& a, const S& s) {
+  DSNS_INLINE friend Jet2 operator-(const Jet2& a, const S& s) {
     return Jet2(a.f - detail::constant<Jet2>(s), a.g, a.h);
   }
   template <PassiveFor<Jet2> S>
-  friend Jet2 operator-(const S& s, const Jet2& a) {
+  DSNS_INLINE friend Jet2 operator-(const S& s, const Jet2& a) {
     Jet2 r = -a;
     r.f = detail::constant<Jet2>(s) - a.f;
     return r;
   }
   template <PassiveFor<Jet2> S>
-  friend Jet2 operator*(const Jet2& a, const S& s) {
+  DSNS_INLINE friend Jet2 operator*(const Jet2& a, const S& s) {
     const auto& c = detail::constant<Jet2>(s);
     return each(a, [&c](const T& x) { return x * c; });
   }
   template <PassiveFor<Jet2> S>
-  friend Jet2 operator*(const S& s, const Jet2& a) {
+  DSNS_INLINE friend Jet2 operator*(const S& s, const Jet2& a) {
     return a * s;
   }
   template <PassiveFor<Jet2> S>
-  friend Jet2 operator/(const Jet2& a, const S& s) {
+  DSNS_INLINE friend Jet2 operator/(const Jet2& a, const S& s) {
     const auto& c = detail::constant<Jet2>(s);
     return each(a, [&c](const T& x) { return x / c; });
   }
   template <PassiveFor<Jet2> S>
-  friend Jet2 operator/(const S& s, const Jet2& a) {
+  DSNS_INLINE friend Jet2 operator/(const S& s, const Jet2& a) {
     const T q = detail::constant<Jet2>(s) / a.f, d = -q / a.f;
     return chain(a, q, d, [&] { return -2 * d / a.f; });
   }
 
-  Jet2& operator+=(const Jet2& b) { return *this = *this + b; }
-  Jet2& operator-=(const Jet2& b) { return *this = *this - b; }
-  Jet2& operator*=(const Jet2& b) { return *this = *this * b; }
-  Jet2& operator/=(const Jet2& b) { return *this = *this / b; }
+  /// By value, so that a temporary's entries are added as the temporaries they are (see Var).
+  DSNS_INLINE Jet2& operator+=(Jet2 b) {
+    f += std::move(b.f);
+    for (std::size_t i = 0; i < N; ++i) g[i] += std::move(b.g[i]);
+    for (std::size_t m = 0; m < packed; ++m) h[m] += std::move(b.h[m]);
+    return *this;
+  }
+  DSNS_INLINE Jet2& operator-=(Jet2 b) {
+    f -= std::move(b.f);
+    for (std::size_t i = 0; i < N; ++i) g[i] -= std::move(b.g[i]);
+    for (std::size_t m = 0; m < packed; ++m) h[m] -= std::move(b.h[m]);
+    return *this;
+  }
+  DSNS_INLINE Jet2& operator*=(const Jet2& b) { return *this = *this * b; }
+  DSNS_INLINE Jet2& operator/=(const Jet2& b) { return *this = *this / b; }
 
   /// Comparisons see values only.
   friend bool operator==(const Jet2& a, const Jet2& b) { return a.f == b.f; }
@@ -164,7 +176,7 @@ struct Jet2 {
 
  private:
   template <class Op>
-  static Jet2 each(const Jet2& a, const Op& op) {
+  DSNS_INLINE static Jet2 each(const Jet2& a, const Op& op) {
     Jet2 r;
     r.f = op(a.f);
     for (std::size_t i = 0; i < N; ++i) r.g[i] = op(a.g[i]);
@@ -172,7 +184,7 @@ struct Jet2 {
     return r;
   }
   template <class Op>
-  static Jet2 each(const Jet2& a, const Jet2& b, const Op& op) {
+  DSNS_INLINE static Jet2 each(const Jet2& a, const Jet2& b, const Op& op) {
     Jet2 r;
     r.f = op(a.f, b.f);
     for (std::size_t i = 0; i < N; ++i) r.g[i] = op(a.g[i], b.g[i]);

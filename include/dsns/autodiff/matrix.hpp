@@ -9,11 +9,14 @@
 ///
 /// Parameters are views of the caller's memory. A tape keeps its memory from one recording to the next: a step of the
 /// same shapes as the last allocates nothing. T may be float, double, or a forward scalar. One tape serves one thread.
+/// Operations of one's own: MatrixTape::operation, as used in autodiff/matrix_jets.hpp.
 #include <dsns/autodiff/eigen.hpp>
 #include <dsns/core/errors.hpp>
 
 #include <array>
 #include <cstddef>
+#include <initializer_list>
+#include <memory>
 #include <vector>
 
 namespace dsns {
@@ -30,14 +33,55 @@ class MatrixTape {
     std::size_t place;
   };
 
+  struct Operation;
+  /// Adds to the operands' adjoints what the operation's own means for them.
+  using Pullback = void (*)(MatrixTape&, const Operation&);
+
+  /// One operation: its result, and what its pullback needs.
+  struct Operation {
+    std::array<Node, 4> operands{};
+    Matrix value, adjoint;
+    std::array<Matrix, 4> kept;  ///< for the pullback; memory stays from recording to recording
+    Eigen::Index number = 0;     ///< likewise
+
+   private:
+    friend class MatrixTape;
+    Pullback pullback = nullptr;
+    bool active = false;   // depends on a parameter
+    bool reached = false;  // adjoint holds something
+    const T* parameter = nullptr;
+    T* gradient = nullptr;
+    Eigen::Index rows = 0, cols = 0;  // of a parameter
+  };
+
   /// Forgets all nodes, keeps their memory.
   void clear() { used_ = 0; }
+
+  /// Records an operation with a result of the given shape, which the caller writes to `value`; `last()` is its node.
+  /// The reference stays valid until clear().
+  Operation& operation(Eigen::Index rows, Eigen::Index cols, std::initializer_list<Node> operands, Pullback pullback) {
+    bool active = false;
+    if (used_ == operations_.size()) operations_.push_back(std::make_unique<Operation>());
+    Operation& o = *operations_[used_];
+    std::size_t k = 0;
+    for (const Node& n : operands) {
+      active = active || operations_[n.place]->active;
+      o.operands[k++] = n;
+    }
+    ++used_;
+    o.pullback = pullback;
+    o.active = active;
+    o.reached = false;
+    o.parameter = nullptr;
+    o.value.resize(rows, cols);
+    return o;
+  }
+  Node last() const { return {used_ - 1}; }
 
   /// A matrix nobody differentiates in; `fill` writes its entries in place.
   template <class Fill>
   Node constant(Eigen::Index rows, Eigen::Index cols, const Fill& fill) {
-    Entry& e = next(Operation::constant, rows, cols);
-    fill(e.value);
+    fill(operation(rows, cols, {}, nullptr).value);
     return last();
   }
   Node constant(const Matrix& value) {
@@ -47,12 +91,12 @@ class MatrixTape {
   Node parameter(const Value& value, Gradient gradient) {
     require(value.rows() == gradient.rows() && value.cols() == gradient.cols(), "MatrixTape::parameter: value is ",
             value.rows(), " x ", value.cols(), ", gradient ", gradient.rows(), " x ", gradient.cols());
-    Entry& e = next(Operation::parameter, 0, 0);
-    e.parameter = value.data();
-    e.gradient = gradient.data();
-    e.rows = value.rows();
-    e.cols = value.cols();
-    e.active = true;
+    Operation& o = operation(0, 0, {}, nullptr);
+    o.parameter = value.data();
+    o.gradient = gradient.data();
+    o.rows = value.rows();
+    o.cols = value.cols();
+    o.active = true;
     return last();
   }
 
@@ -61,8 +105,10 @@ class MatrixTape {
     const Value va = value(a), vb = value(b);
     require(va.cols() == vb.rows(), "MatrixTape::product: ", va.rows(), " x ", va.cols(), " times ", vb.rows(), " x ",
             vb.cols());
-    Entry& e = next(Operation::product, va.rows(), vb.cols(), a, b);
-    e.value.noalias() = view(a) * view(b);
+    operation(va.rows(), vb.cols(), {a, b}, [](MatrixTape& tape, const Operation& o) {
+      tape.accumulate(o.operands[0], o.adjoint * tape.value(o.operands[1]).transpose());
+      tape.accumulate(o.operands[1], tape.value(o.operands[0]).transpose() * o.adjoint);
+    }).value.noalias() = va * vb;
     return last();
   }
   /// a + b; a single column b is added to every column of a.
@@ -70,49 +116,100 @@ class MatrixTape {
     const Value va = value(a), vb = value(b);
     require(va.rows() == vb.rows() && (va.cols() == vb.cols() || vb.cols() == 1), "MatrixTape::add: ", va.rows(), " x ",
             va.cols(), " and ", vb.rows(), " x ", vb.cols());
-    Entry& e = next(Operation::add, va.rows(), va.cols(), a, b);
-    if (view(b).cols() == view(a).cols())
-      e.value = view(a) + view(b);
+    Operation& o = operation(va.rows(), va.cols(), {a, b}, [](MatrixTape& tape, const Operation& sum) {
+      tape.accumulate(sum.operands[0], sum.adjoint);
+      if (tape.value(sum.operands[1]).cols() == sum.adjoint.cols())
+        tape.accumulate(sum.operands[1], sum.adjoint);
+      else
+        tape.accumulate(sum.operands[1], sum.adjoint.rowwise().sum());
+    });
+    if (vb.cols() == va.cols())
+      o.value = va + vb;
     else
-      e.value = view(a).colwise() + view(b).col(0);
+      o.value = va.colwise() + vb.col(0);
+    return last();
+  }
+  /// The constant factor times a.
+  Node scale(Node a, const T& factor) {
+    const Value va = value(a);
+    Operation& o = operation(va.rows(), va.cols(), {a}, [](MatrixTape& tape, const Operation& scaled) {
+      tape.accumulate(scaled.operands[0], scaled.kept[0](0, 0) * scaled.adjoint);
+    });
+    o.kept[0].setConstant(1, 1, factor);
+    o.value = factor * va;
     return last();
   }
   /// w(a) entry by entry; `function(n, y, slope)` replaces the n entries of y by w(y) and writes w'(y).
   template <class Function>
   Node apply(Node a, const Function& function) {
-    Entry& e = next(Operation::apply, value(a).rows(), value(a).cols(), a);
-    e.value = view(a);
-    e.slope.resize(e.value.rows(), e.value.cols());
-    for (Eigen::Index j = 0; j < e.value.cols(); ++j)
-      function(e.value.rows(), e.value.col(j).data(), e.slope.col(j).data());
+    const Value va = value(a);
+    Operation& o = operation(va.rows(), va.cols(), {a}, [](MatrixTape& tape, const Operation& applied) {
+      tape.accumulate(applied.operands[0], applied.adjoint.cwiseProduct(applied.kept[0]));
+    });
+    o.value = va;
+    o.kept[0].resize(va.rows(), va.cols());
+    for (Eigen::Index j = 0; j < va.cols(); ++j) function(va.rows(), o.value.col(j).data(), o.kept[0].col(j).data());
     return last();
   }
   /// function(w x + b), one pass over memory after the product.
   template <class Function>
   Node layer(Node w, Node b, Node x, const Function& function) {
-    return fused_layer(w, b, x, nullptr, function);
+    return fused_layer({w, b, x}, function);
   }
   /// function(w x + b + r)
   template <class Function>
   Node layer(Node w, Node b, Node x, Node r, const Function& function) {
-    return fused_layer(w, b, x, &r, function);
+    return fused_layer({w, b, x, r}, function);
+  }
+  /// The sum of all entries, a 1 x 1 node.
+  Node sum(Node a) {
+    const Value va = value(a);
+    operation(1, 1, {a}, [](MatrixTape& tape, const Operation& o) {
+      const Value x = tape.value(o.operands[0]);
+      tape.accumulate(o.operands[0], Matrix::Constant(x.rows(), x.cols(), o.adjoint(0, 0)));
+    }).value(0, 0) = va.sum();
+    return last();
   }
   /// The sum of the squared entries of a - target, a 1 x 1 node.
   Node squared_error(Node a, const Matrix& target) {
     const Value va = value(a);
     require(va.rows() == target.rows() && va.cols() == target.cols(), "MatrixTape::squared_error: ", va.rows(), " x ",
             va.cols(), " against a target of ", target.rows(), " x ", target.cols());
-    Entry& e = next(Operation::squared_error, 1, 1, a);
-    e.slope = view(a) - target;
-    e.value(0, 0) = e.slope.squaredNorm();
+    Operation& o = operation(1, 1, {a}, [](MatrixTape& tape, const Operation& error) {
+      tape.accumulate(error.operands[0], (T(2) * error.adjoint(0, 0)) * error.kept[0]);
+    });
+    o.kept[0] = va - target;
+    o.value(0, 0) = o.kept[0].squaredNorm();
     return last();
   }
 
-  Value value(Node node) const { return view(entries_[node.place]); }
+  Value value(Node node) const {
+    const Operation& o = *operations_[node.place];
+    return o.parameter != nullptr ? Value(o.parameter, o.rows, o.cols)
+                                  : Value(o.value.data(), o.value.rows(), o.value.cols());
+  }
   /// The derivative of the last sweep's result in this node, zero where it does not depend on it.
   Matrix adjoint(Node node) const {
-    const Entry& e = entries_[node.place];
-    return e.reached ? e.adjoint : Matrix::Zero(value(node).rows(), value(node).cols());
+    const Operation& o = *operations_[node.place];
+    return o.reached ? o.adjoint : Matrix::Zero(value(node).rows(), value(node).cols());
+  }
+
+  /// Whether a pullback need care for this operand.
+  bool is_active(Node node) const { return operations_[node.place]->active; }
+
+  /// For pullbacks: adds an expression to a node's adjoint. The first contribution is assigned, so nothing is cleared
+  /// beforehand.
+  template <class Expression>
+  void accumulate(Node node, const Expression& contribution) {
+    Operation& o = *operations_[node.place];
+    if (!o.active) return;
+    if (o.parameter != nullptr)
+      Gradient(o.gradient, o.rows, o.cols).noalias() += contribution;
+    else if (o.reached)
+      o.adjoint.noalias() += contribution;
+    else
+      o.adjoint.noalias() = contribution;
+    o.reached = true;
   }
 
   /// Adds `seed` times the derivatives of a 1 x 1 node to the gradients of all parameters.
@@ -120,120 +217,61 @@ class MatrixTape {
   void backward(Node result, const T& seed = T(1)) {
     require(value(result).size() == 1, "MatrixTape::backward: the result has ", value(result).size(),
             " entries; differentiate one number");
-    for (std::size_t k = 0; k < used_; ++k) entries_[k].reached = false;
-    if (!entries_[result.place].active) return;
-    accumulate(result.place, Matrix::Constant(1, 1, seed));
-    for (std::size_t k = result.place + 1; k-- > 0;)
-      if (entries_[k].reached) propagate(entries_[k]);
+    for (std::size_t k = 0; k < used_; ++k) operations_[k]->reached = false;
+    if (!is_active(result)) return;
+    accumulate(result, Matrix::Constant(1, 1, seed));
+    for (std::size_t k = result.place + 1; k-- > 0;) {
+      const Operation& o = *operations_[k];
+      if (o.reached && o.pullback != nullptr) o.pullback(*this, o);
+    }
+  }
+
+  /// For pullbacks: a matrix to work in, of no particular shape.
+  Matrix& scratch() { return scratch_; }
+
+  /// Memory held, in use or not.
+  std::size_t bytes() const {
+    Eigen::Index entries = 0;
+    for (const auto& o : operations_) {
+      entries += o->value.size() + o->adjoint.size();
+      for (const Matrix& m : o->kept) entries += m.size();
+    }
+    return std::size_t(entries) * sizeof(T) + operations_.size() * sizeof(Operation);
   }
 
  private:
-  enum class Operation { constant, parameter, product, add, apply, layer, squared_error };
-  static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
-
-  struct Entry {
-    Operation operation = Operation::constant;
-    std::size_t a = 0, b = 0, x = 0, r = nowhere;  // operands; a layer takes weights a, bias b, input x, residual r
-    bool active = false;                           // depends on a parameter
-    bool reached = false;                          // adjoint holds something
-    Matrix value, adjoint, slope;
-    const T* parameter = nullptr;
-    T* gradient = nullptr;
-    Eigen::Index rows = 0, cols = 0;  // of a parameter
-  };
-
-  static Value view(const Entry& e) {
-    return e.operation == Operation::parameter ? Value(e.parameter, e.rows, e.cols)
-                                               : Value(e.value.data(), e.value.rows(), e.value.cols());
-  }
-  Value view(Node node) const { return view(entries_[node.place]); }
-  Node last() const { return {used_ - 1}; }
-
-  template <class... Operands>
-  Entry& next(Operation operation, Eigen::Index rows, Eigen::Index cols, Operands... operands) {
-    const bool active = (entries_[operands.place].active || ... || false);
-    if (used_ == entries_.size()) entries_.emplace_back();
-    Entry& e = entries_[used_++];
-    e.operation = operation;
-    const std::array<std::size_t, 4> places{operands.place...};
-    e.a = places[0];
-    e.b = places[1];
-    e.x = places[2];
-    e.r = sizeof...(operands) > 3 ? places[3] : nowhere;
-    e.active = active;
-    e.reached = false;
-    if (operation != Operation::parameter) e.value.resize(rows, cols);
-    return e;
-  }
-
+  /// Operands: weights, bias, input, and perhaps something to add.
   template <class Function>
-  Node fused_layer(Node w, Node b, Node x, const Node* r, const Function& function) {
-    const Eigen::Index rows = value(w).rows(), cols = value(x).cols();
-    require(value(w).cols() == value(x).rows() && value(b).rows() == rows && value(b).cols() == 1 &&
-                (r == nullptr || (value(*r).rows() == rows && value(*r).cols() == cols)),
-            "MatrixTape::layer: weights ", rows, " x ", value(w).cols(), ", bias ", value(b).rows(), ", input ",
-            value(x).rows(), " x ", cols, " and residual do not fit");
-    Entry& e = r ? next(Operation::layer, rows, cols, w, b, x, *r) : next(Operation::layer, rows, cols, w, b, x);
-    e.slope.resize(rows, cols);
-    e.value.noalias() = view(w) * view(x);
-    for (Eigen::Index j = 0; j < cols; ++j) {
-      if (r)
-        e.value.col(j) += view(b).col(0) + view(*r).col(j);
+  Node fused_layer(std::initializer_list<Node> operands, const Function& function) {
+    const auto operand = [&](std::size_t k) { return value(operands.begin()[k]); };
+    const bool residual = operands.size() == 4;
+    const Value w = operand(0), b = operand(1), x = operand(2), r = operand(residual ? 3 : 1);
+    require(w.cols() == x.rows() && b.rows() == w.rows() && b.cols() == 1 && r.rows() == w.rows() &&
+                (!residual || r.cols() == x.cols()),
+            "MatrixTape::layer: weights ", w.rows(), " x ", w.cols(), ", bias ", b.rows(), ", input ", x.rows(), " x ",
+            x.cols(), " and residual do not fit");
+    Operation& o = operation(w.rows(), x.cols(), operands, [](MatrixTape& tape, const Operation& layer) {
+      tape.scratch_ = layer.kept[0].cwiseProduct(layer.adjoint);  // the adjoint before the activation
+      tape.accumulate(layer.operands[0], tape.scratch_ * tape.value(layer.operands[2]).transpose());
+      tape.accumulate(layer.operands[1], tape.scratch_.rowwise().sum());
+      tape.accumulate(layer.operands[2], tape.value(layer.operands[0]).transpose() * tape.scratch_);
+      if (layer.number == 4) tape.accumulate(layer.operands[3], tape.scratch_);
+    });
+    o.number = Eigen::Index(operands.size());
+    o.kept[0].resize(w.rows(), x.cols());
+    o.value.noalias() = w * x;
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
+      if (residual)
+        o.value.col(j) += b.col(0) + r.col(j);
       else
-        e.value.col(j) += view(b).col(0);
-      function(rows, e.value.col(j).data(), e.slope.col(j).data());
+        o.value.col(j) += b.col(0);
+      function(w.rows(), o.value.col(j).data(), o.kept[0].col(j).data());
     }
     return last();
   }
 
-  /// Adds an expression to a node's adjoint; the first contribution is assigned, so nothing is cleared beforehand.
-  template <class Expression>
-  void accumulate(std::size_t place, const Expression& contribution) {
-    Entry& e = entries_[place];
-    if (!e.active) return;
-    if (e.operation == Operation::parameter)
-      Gradient(e.gradient, e.rows, e.cols).noalias() += contribution;
-    else if (e.reached)
-      e.adjoint.noalias() += contribution;
-    else
-      e.adjoint.noalias() = contribution;
-    e.reached = true;
-  }
-
-  void propagate(Entry& e) {
-    switch (e.operation) {
-      case Operation::constant:
-      case Operation::parameter:
-        break;
-      case Operation::product:
-        accumulate(e.a, e.adjoint * view(entries_[e.b]).transpose());
-        accumulate(e.b, view(entries_[e.a]).transpose() * e.adjoint);
-        break;
-      case Operation::add:
-        accumulate(e.a, e.adjoint);
-        if (view(entries_[e.b]).cols() == e.adjoint.cols())
-          accumulate(e.b, e.adjoint);
-        else
-          accumulate(e.b, e.adjoint.rowwise().sum());
-        break;
-      case Operation::apply:
-        accumulate(e.a, e.adjoint.cwiseProduct(e.slope));
-        break;
-      case Operation::layer:
-        before_activation_ = e.slope.cwiseProduct(e.adjoint);
-        accumulate(e.a, before_activation_ * view(entries_[e.x]).transpose());
-        accumulate(e.b, before_activation_.rowwise().sum());
-        accumulate(e.x, view(entries_[e.a]).transpose() * before_activation_);
-        if (e.r != nowhere) accumulate(e.r, before_activation_);
-        break;
-      case Operation::squared_error:
-        accumulate(e.a, (T(2) * e.adjoint(0, 0)) * e.slope);
-        break;
-    }
-  }
-
-  Matrix before_activation_;
-  std::vector<Entry> entries_;
+  Matrix scratch_;
+  std::vector<std::unique_ptr<Operation>> operations_;
   std::size_t used_ = 0;
 };
 

@@ -3,6 +3,13 @@
 /// scalars, and nest in one another; at the bottom lies an arithmetic type, the passive scalar.
 #include <type_traits>
 
+/// For operators of a few instructions each, which compilers count as calls when they decide what to inline.
+#if defined(__GNUC__)
+#define DSNS_INLINE [[gnu::always_inline]] inline
+#else
+#define DSNS_INLINE inline
+#endif
+
 namespace dsns {
 
 /// Customisation point: true for scalars that supply

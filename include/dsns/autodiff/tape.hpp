@@ -12,87 +12,164 @@
 /// Cost is linear in the number of operations, also where results are shared; nothing recurses. A tape keeps its memory
 /// from one recording to the next. Tapes of different threads are independent.
 #include <dsns/autodiff/functions.hpp>
+#include <dsns/autodiff/tape_records.hpp>
 #include <dsns/core/errors.hpp>
 
-#include <algorithm>
 #include <atomic>
 #include <compare>
 #include <cstdint>
 #include <limits>
-#include <vector>
+#include <utility>
 
 namespace dsns {
 
 template <class T>
 class Tape;
 
+namespace detail {
+
+enum class VarState : std::uint32_t {
+  exact,    // a constant, or recorded with this value
+  shifted,  // recorded but for a constant added since
+  term,     // not recorded: the term `operands`
+  open      // recorded but for the value; terms may be added to the run operands >> 32
+};
+
+/// What a variable is besides its value. Small enough to be passed in registers.
+struct VarTerms {
+  std::uint64_t operands = 0;   // a term, or the place in the lower half
+  std::uint32_t recording = 0;  // 0 is a constant
+  VarState state = VarState::exact;
+
+  std::uint32_t place() const { return static_cast<std::uint32_t>(operands); }
+  bool settled() const { return state <= VarState::shifted; }
+  void shift() {
+    if (recording != 0 && state == VarState::exact) state = VarState::shifted;
+  }
+};
+
+}  // namespace detail
+
 /// A value on a tape. T may be an arithmetic type or a forward scalar (Var<Dual<double>> differentiates the gradient).
+///
+/// A product is not recorded when it is computed: the variable carries its factors, and records it when it is first used as
+/// an operand, or copied. Added by += to a sum that has not been used yet, it becomes a term of the sum's run instead.
+/// Operators take their operands by value, so that a temporary hands its factors on and a named variable has been recorded
+/// (by the copy).
 template <class T>
 struct Var {
   using Inner = T;
 
   T f;
-  std::uint32_t node = 0;       ///< place on the tape; 0 is a constant
-  std::uint32_t recording = 0;  ///< which recording the place belongs to
 
   Var() : f(T(0)) {}
   /// A constant.
   template <class S>
-  requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) Var(const S& s)
+  requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) DSNS_INLINE Var(const S& s)
       : f(static_cast<T>(s)) {}
+  DSNS_INLINE Var(const Var& x) : f(x.f) {
+    x.settle();
+    t_ = x.t_;
+  }
+  DSNS_INLINE Var& operator=(const Var& x) {
+    x.settle();
+    f = x.f;
+    t_ = x.t_;
+    return *this;
+  }
+  DSNS_INLINE Var(Var&& x) {
+    x.close();
+    f = x.f;
+    t_ = x.t_;
+  }
+  DSNS_INLINE Var& operator=(Var&& x) {
+    x.close();
+    f = x.f;
+    t_ = x.t_;
+    return *this;
+  }
+  ~Var() = default;
 
   /// w(x) for a function with value w and derivative d at x.f.
   template <class Second>
   friend Var chain(const Var& x, const T& w, const T& d, const Second&) {
-    return x.node == 0 ? Var(w) : Tape<T>::operation(w, x, d);
+    if (x.t_.recording == 0) return Var(w);
+    x.settle();
+    return Var(w, recorded(x.t_.recording, records(x.t_).push(x.t_.place(), d, 0, T(0), w)));
   }
   /// w(x, y) for a function with value w and partial derivatives wx, wy.
   template <class Second>
   friend Var chain(const Var& x, const Var& y, const T& w, const T& wx, const T& wy, const Second&) {
-    if (x.node == 0) return y.node == 0 ? Var(w) : Tape<T>::operation(w, y, wy);
-    return y.node == 0 ? Tape<T>::operation(w, x, wx) : Tape<T>::operation(w, x, wx, y, wy);
+    if (x.t_.recording == 0 && y.t_.recording == 0) return Var(w);
+    x.settle();
+    y.settle();
+    return Var(w, join(x.t_, wx, y.t_, wy, w));
   }
-  friend bool derivatives_vanish(const Var& x) { return x.node == 0 && detail::inert(x.f); }
+  friend bool derivatives_vanish(const Var& x) { return x.t_.recording == 0 && detail::inert(x.f); }
 
-  friend Var operator+(const Var& a) { return a; }
-  friend Var operator-(const Var& a) { return chain(a, -a.f, T(-1), none); }
-  friend Var operator+(const Var& a, const Var& b) { return chain(a, b, a.f + b.f, T(1), T(1), none); }
-  friend Var operator-(const Var& a, const Var& b) { return chain(a, b, a.f - b.f, T(1), T(-1), none); }
-  friend Var operator*(const Var& a, const Var& b) { return chain(a, b, a.f * b.f, b.f, a.f, none); }
+  friend Var operator+(Var a) { return a; }
+  DSNS_INLINE friend Var operator-(Var a) {
+    a.negate();
+    return a;
+  }
+  DSNS_INLINE friend Var operator+(Var a, Var b) {
+    const T w = a.f + b.f;
+    return Var(w, sum(a.t_, b.t_, false, a.f, b.f, w));
+  }
+  DSNS_INLINE friend Var operator-(Var a, Var b) {
+    const T w = a.f - b.f;
+    return Var(w, sum(a.t_, b.t_, true, a.f, b.f, w));
+  }
+  DSNS_INLINE friend Var operator*(Var a, Var b) {
+    const T w = a.f * b.f;
+    if (exact_and_active(a.t_) && exact_and_active(b.t_)) [[likely]]
+      return Var(w, {detail::Term::of(a.t_.place(), b.t_.place(), 0).bits, a.t_.recording, State::term});
+    return Var(w, general_product(a.t_, b.t_, a.f, b.f));
+  }
   friend Var operator/(const Var& a, const Var& b) {
     const T inverse = 1 / b.f, q = a.f / b.f;
     return chain(a, b, q, inverse, -q * inverse, none);
   }
 
   template <PassiveFor<Var> S>
-  friend Var operator+(const Var& a, const S& s) {
-    return a.shifted(a.f + detail::constant<Var>(s));
+  DSNS_INLINE friend Var operator+(Var a, const S& s) {
+    a.shift(a.f + detail::constant<Var>(s));
+    return a;
   }
   template <PassiveFor<Var> S>
-  friend Var operator+(const S& s, const Var& a) {
-    return a + s;
+  DSNS_INLINE friend Var operator+(const S& s, Var a) {
+    a.shift(a.f + detail::constant<Var>(s));
+    return a;
   }
   template <PassiveFor<Var> S>
-  friend Var operator-(const Var& a, const S& s) {
-    return a.shifted(a.f - detail::constant<Var>(s));
+  DSNS_INLINE friend Var operator-(Var a, const S& s) {
+    a.shift(a.f - detail::constant<Var>(s));
+    return a;
   }
   template <PassiveFor<Var> S>
-  friend Var operator-(const S& s, const Var& a) {
-    return chain(a, detail::constant<Var>(s) - a.f, T(-1), none);
+  DSNS_INLINE friend Var operator-(const S& s, Var a) {
+    const T w = detail::constant<Var>(s) - a.f;
+    a.negate();
+    a.shift(w);
+    return a;
   }
   template <PassiveFor<Var> S>
-  friend Var operator*(const Var& a, const S& s) {
+  DSNS_INLINE friend Var operator*(Var a, const S& s) {
     const T c = detail::constant<Var>(s);
-    return chain(a, a.f * c, c, none);
+    a.scale(a.f * c, c);
+    return a;
   }
   template <PassiveFor<Var> S>
-  friend Var operator*(const S& s, const Var& a) {
-    return a * s;
-  }
-  template <PassiveFor<Var> S>
-  friend Var operator/(const Var& a, const S& s) {
+  DSNS_INLINE friend Var operator*(const S& s, Var a) {
     const T c = detail::constant<Var>(s);
-    return chain(a, a.f / c, 1 / c, none);
+    a.scale(a.f * c, c);
+    return a;
+  }
+  template <PassiveFor<Var> S>
+  DSNS_INLINE friend Var operator/(Var a, const S& s) {
+    const T c = detail::constant<Var>(s);
+    a.scale(a.f / c, 1 / c);
+    return a;
   }
   template <PassiveFor<Var> S>
   friend Var operator/(const S& s, const Var& a) {
@@ -100,9 +177,15 @@ struct Var {
     return chain(a, q, -q / a.f, none);
   }
 
-  Var& operator+=(const Var& b) { return *this = *this + b; }
-  Var& operator-=(const Var& b) { return *this = *this - b; }
-  Var& operator*=(const Var& b) { return *this = *this * b; }
+  DSNS_INLINE Var& operator+=(Var b) {
+    accumulate(b.t_, false, b.f, f + b.f);
+    return *this;
+  }
+  DSNS_INLINE Var& operator-=(Var b) {
+    accumulate(b.t_, true, b.f, f - b.f);
+    return *this;
+  }
+  DSNS_INLINE Var& operator*=(Var b) { return *this = Var(*this) * std::move(b); }
   Var& operator/=(const Var& b) { return *this = *this / b; }
 
   /// Comparisons see values only.
@@ -118,12 +201,152 @@ struct Var {
   }
 
  private:
+  friend class Tape<T>;
+  using Terms = detail::VarTerms;
+  using State = detail::VarState;
+  using Term = detail::Term;
   static constexpr auto none = [] {};
-  /// The same place on the tape with another value: adding a constant needs no operation of its own.
-  Var shifted(const T& w) const {
-    Var r = *this;
-    r.f = w;
-    return r;
+
+  mutable Terms t_;
+
+  DSNS_INLINE Var(const T& w, const Terms& t) : f(w), t_(t) {}
+
+  DSNS_INLINE static auto& records(const Terms& t) { return Tape<T>::active(t.recording); }
+  DSNS_INLINE static Terms recorded(std::uint32_t recording, std::uint32_t place) {
+    return {place, recording, State::exact};
+  }
+  DSNS_INLINE static bool exact_and_active(const Terms& t) {
+    return t.state == State::exact && Tape<T>::is_active(t.recording);
+  }
+
+  DSNS_INLINE void settle() const {
+    if (!t_.settled()) [[unlikely]]
+      t_ = recorded(t_.recording, place_of(t_, f));
+  }
+  /// A sum has one owner, who may add to it.
+  DSNS_INLINE void close() const {
+    if (t_.state == State::open) [[unlikely]]
+      t_ = recorded(t_.recording, place_of(t_, f));
+  }
+  /// The place of terms with value w, recorded now where they have none.
+  [[gnu::noinline]] static std::uint32_t place_of(Terms t, T w) {
+    if (t.settled()) return t.place();
+    auto& tape = records(t);
+    if (t.state == State::open) {
+      tape.value(t.place()) = w;
+      return t.place();
+    }
+    const Term term{t.operands};
+    if (term.is_weighted()) return tape.push(term.b(), T(tape.weight(term.a())), 0, T(0), w);
+    const T sign = T(term.is_negative() ? -1 : 1);
+    return tape.push(term.a(), T(sign * tape.value(term.b())), term.b(), T(sign * tape.value(term.a())), w);
+  }
+
+  /// A result w with derivatives wx, wy in the settled x and y; one may be a constant.
+  DSNS_INLINE static Terms join(const Terms& x, const T& wx, const Terms& y, const T& wy, const T& w) {
+    const Terms& active = x.recording != 0 ? x : y;
+    check(x, y);
+    return recorded(active.recording, records(active).push(x.place(), wx, y.place(), wy, w));
+  }
+  DSNS_INLINE static void check(const Terms& x, const Terms& y) {
+    if (x.recording != y.recording && x.recording != 0 && y.recording != 0) [[unlikely]]
+      mixed();
+  }
+  [[noreturn, gnu::cold]] static void mixed() {
+    throw InvalidArgument("Var: the operands belong to different recordings");
+  }
+
+  /// The terms of x +- y, whose value is w.
+  DSNS_INLINE static Terms sum(const Terms& x, const Terms& y, bool negative, const T& xf, const T& yf, const T& w) {
+    if (!exact_and_active(x) || !exact_and_active(y)) return general_sum(x, y, negative, xf, yf, w);
+    return recorded(x.recording, records(x).push(x.place(), T(1), y.place(), T(negative ? -1 : 1), w));
+  }
+  [[gnu::noinline]] static Terms general_sum(Terms x, Terms y, bool negative, T xf, T yf, T w) {
+    if (y.recording == 0) {
+      x.shift();
+      return x;
+    }
+    if (x.recording == 0) {
+      if (negative) return scaled(y, yf, T(-1));
+      if (!(std::is_arithmetic_v<T> && w == yf)) y.shift();
+      return y;
+    }
+    check(x, y);
+    const Linear a = linear(x, xf), b = linear(y, yf);
+    return recorded(x.recording, records(x).push(a.place, a.weight, b.place, negative ? T(-b.weight) : b.weight, w));
+  }
+
+  /// Adds +- y, of value yf, in place; w is the new value.
+  DSNS_INLINE void accumulate(const Terms& y, bool negative, const T& yf, const T& w) {
+    if (y.state == State::term && !(negative && Term{y.operands}.is_weighted())) {
+      const Term term{negative ? y.operands ^ Term::negative : y.operands};
+      if (t_.state != State::open || t_.recording != y.recording || !Tape<T>::is_active(y.recording) ||
+          !records(y).extend_run(std::uint32_t(t_.operands >> 32), term))
+        t_ = opened(t_, y, term, f);
+    } else {
+      t_ = sum(t_, y, negative, f, yf, w);
+    }
+    f = w;
+  }
+  /// A sum of x and the term y.
+  [[gnu::noinline]] static Terms opened(Terms x, Terms y, Term term, T xf) {
+    check(x, y);
+    auto& tape = records(y);
+    const std::uint32_t base = x.recording == 0 ? 0 : place_of(x, xf);
+    const std::uint32_t run = tape.open_run(base, term);
+    return {(std::uint64_t(run) << 32) | tape.run_place(run), y.recording, State::open};
+  }
+
+  DSNS_INLINE void shift(const T& w) {
+    close();
+    f = w;
+    t_.shift();
+  }
+  DSNS_INLINE void negate() {
+    if (t_.state == State::term && !Term{t_.operands}.is_weighted())
+      t_.operands ^= Term::negative;
+    else
+      t_ = scaled(t_, f, T(-1));
+    f = -f;
+  }
+  /// The value becomes w, the derivatives c times what they are.
+  DSNS_INLINE void scale(const T& w, const T& c) {
+    t_ = scaled(t_, f, c);
+    f = w;
+  }
+  /// c times terms t of value w.
+  DSNS_INLINE static Terms scaled(const Terms& t, const T& w, const T& c) {
+    if (t.settled() && Tape<T>::is_active(t.recording)) [[likely]]
+      return {Term::of(records(t).push_weight(c), t.place(), Term::weighted).bits, t.recording, State::term};
+    return general_scaled(t, w, c);
+  }
+  [[gnu::noinline]] static Terms general_scaled(Terms t, T w, T c) {
+    if (t.recording == 0) return t;
+    auto& tape = records(t);
+    const Linear l = linear(t, w);
+    return {Term::of(tape.push_weight(T(l.weight * c)), l.place, Term::weighted).bits, t.recording, State::term};
+  }
+
+  struct Linear {
+    std::uint32_t place;
+    T weight;
+  };
+  /// The terms t of value w as a weight times a recorded place.
+  static Linear linear(const Terms& t, const T& w) {
+    const Term term{t.operands};
+    if (t.state == State::term && term.is_weighted()) return {term.b(), records(t).weight(term.a())};
+    if (t.state == State::term && term.a() == term.b()) {
+      const T x = records(t).value(term.a());
+      return {term.a(), term.is_negative() ? T(-(x + x)) : T(x + x)};
+    }
+    return {place_of(t, w), T(1)};
+  }
+  [[gnu::noinline]] static Terms general_product(Terms a, Terms b, T af, T bf) {
+    if (b.recording == 0) return general_scaled(a, af, bf);
+    if (a.recording == 0) return general_scaled(b, bf, af);
+    check(a, b);
+    const Linear x = linear(a, af), y = linear(b, bf);
+    return recorded(a.recording, records(a).push(x.place, T(x.weight * bf), y.place, T(y.weight * af), T(af * bf)));
   }
 };
 
@@ -141,85 +364,74 @@ class Tape {
   /// While it lives, this thread's operations on Var<T> go to its tape; afterwards to the tape that was active before.
   class [[nodiscard]] Recording {
    public:
-    explicit Recording(Tape& tape) : previous_(active_) { active_ = &tape; }
-    ~Recording() { active_ = previous_; }
+    explicit Recording(Tape& tape) : previous_(active_), previous_recording_(active_recording_) {
+      active_ = &tape;
+      active_recording_ = tape.recording_;
+    }
+    ~Recording() {
+      active_ = previous_;
+      active_recording_ = previous_recording_;
+    }
     Recording(const Recording&) = delete;
     Recording& operator=(const Recording&) = delete;
 
    private:
     Tape* previous_;
+    std::uint32_t previous_recording_;
   };
 
   /// Forgets the last recording, keeps its memory, and becomes the active tape of this thread.
   Recording record() {
-    nodes_.resize(1);
-    recording_ = ++last_recording_;
+    records_.clear();
+    do recording_ = last_recording_.fetch_add(1, std::memory_order_relaxed);
+    while (recording_ < 2);
     return Recording(*this);
   }
   /// An independent variable of this recording.
-  Var<T> variable(const T& w) { return add(w, {0, 0, T(0), T(0)}); }
+  Var<T> variable(const T& w) { return Var<T>(w, Var<T>::recorded(recording_, records_.push(0, T(0), 0, T(0), w))); }
 
   /// Derivatives of `seed * result` in everything recorded before it; replaces the adjoints of an earlier sweep.
   /// throws   InvalidArgument for a result of another recording
   void backward(const Var<T>& result, const T& seed = T(1)) {
-    adjoints_.assign(nodes_.size(), T(0));
-    if (result.node == 0) return;
-    check(result);
-    adjoints_[result.node] = seed;
-    for (std::size_t i = result.node; i > 0; --i) {
-      const Node& n = nodes_[i];
-      const T w = adjoints_[i];
-      adjoints_[n.a] += w * n.da;
-      adjoints_[n.b] += w * n.db;
-    }
+    result.settle();
+    if (result.t_.recording != 0) check(result);
+    records_.sweep(result.t_.place(), seed);
   }
   /// The derivative of the last sweep's result in x; 0 for a constant.
   /// throws   InvalidArgument for a variable of another recording, or recorded after the sweep
   T adjoint(const Var<T>& x) const {
-    if (x.node == 0) return T(0);
+    if (x.t_.recording == 0) return T(0);
     check(x);
-    require(x.node < adjoints_.size(), "Tape::adjoint: the variable is younger than the last backward sweep");
-    return adjoints_[x.node];
-  }
-  /// The result w of an operation on x (and y) with the given partial derivatives, recorded on the active tape.
-  /// throws   InvalidArgument for operands of a recording that is not the active one
-  static Var<T> operation(const T& w, const Var<T>& x, const T& d) { return of(x).add(w, {x.node, 0, d, T(0)}); }
-  static Var<T> operation(const T& w, const Var<T>& x, const T& dx, const Var<T>& y, const T& dy) {
-    require(x.recording == y.recording, "Var: the operands belong to different recordings");
-    return of(x).add(w, {x.node, y.node, dx, dy});
+    if (x.t_.state == detail::VarState::term) return T(0);
+    require(x.t_.place() < records_.adjoint_count(), "Tape::adjoint: the variable is younger than the last backward sweep");
+    return records_.adjoint(x.t_.place());
   }
   /// Operations and variables recorded.
-  std::size_t size() const { return nodes_.size() - 1; }
+  std::size_t size() const { return records_.size() - 1; }
+  /// Memory in use by this recording and its adjoints.
+  std::size_t bytes() const { return records_.bytes(); }
 
  private:
-  struct Node {
-    std::uint32_t a, b;  // operands; 0 takes what nobody asks for
-    T da, db;
-  };
+  friend struct Var<T>;
 
-  static Tape& of(const Var<T>& x) {
-    if (active_ == nullptr || active_->recording_ != x.recording) [[unlikely]]
-      throw InvalidArgument("Var: its recording is not the active one of this thread; it has ended or was replaced");
-    return *active_;
+  DSNS_INLINE static detail::TapeRecords<T>& active(std::uint32_t recording) {
+    if (!is_active(recording)) [[unlikely]]
+      inactive();
+    return active_->records_;
   }
-  Var<T> add(const T& w, const Node& n) {
-    if (nodes_.size() == std::numeric_limits<std::uint32_t>::max()) [[unlikely]]
-      throw InvalidArgument("Tape: more than 2^32 operations in one recording");
-    Var<T> r(w);
-    r.node = static_cast<std::uint32_t>(nodes_.size());
-    r.recording = recording_;
-    nodes_.push_back(n);
-    return r;
+  DSNS_INLINE static bool is_active(std::uint32_t recording) { return recording == active_recording_; }
+  [[noreturn, gnu::cold]] static void inactive() {
+    throw InvalidArgument("Var: its recording is not the active one of this thread; it has ended or was replaced");
   }
   void check(const Var<T>& x) const {
-    require(x.recording == recording_, "Tape: the variable does not belong to this tape's last recording");
+    require(x.t_.recording == recording_, "Tape: the variable does not belong to this tape's last recording");
   }
 
-  static inline std::atomic<std::uint32_t> last_recording_{0};
+  static inline std::atomic<std::uint32_t> last_recording_{2};
   static inline constinit thread_local Tape* active_ = nullptr;
+  static inline constinit thread_local std::uint32_t active_recording_ = 1;  // that on it; 1 is nobody's, 0 that of constants
 
-  std::vector<Node> nodes_{1};
-  std::vector<T> adjoints_;
+  detail::TapeRecords<T> records_;
   std::uint32_t recording_ = 0;
 };
 

@@ -1,0 +1,232 @@
+#pragma once
+/// What a Tape stores. A place on it is an intermediate result with its value and, after a sweep, its adjoint. Every place
+/// has a node: two operands and the derivatives in them. Sums of many products, which networks are made of, have a run
+/// besides: it names the operands by first place and stride and takes their values from the tape, so that a term costs no
+/// memory.
+#include <dsns/autodiff/scalar.hpp>
+#include <dsns/core/errors.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace dsns::detail {
+
+/// The operands of a term: two places that are multiplied, or a constant of the tape's and a place. Kept in one number,
+/// with the kind in the bits that no place needs, so that the term expected next is recognised by one comparison.
+struct Term {
+  std::uint64_t bits;
+
+  static constexpr std::uint64_t weighted = std::uint64_t(1) << 63, negative = std::uint64_t(1) << 31;
+  static constexpr Term of(std::uint32_t a, std::uint32_t b, std::uint64_t kind) {
+    return {(std::uint64_t(a) << 32) | b | kind};
+  }
+  std::uint32_t a() const { return std::uint32_t(bits >> 32) & 0x7fffffffu; }
+  std::uint32_t b() const { return std::uint32_t(bits) & 0x7fffffffu; }
+  bool is_weighted() const { return (bits & weighted) != 0; }
+  bool is_negative() const { return (bits & negative) != 0; }
+};
+
+/// Terms with operands at equal distances, added to the sum at `place`. All operands precede the sum.
+struct Run {
+  Term first;
+  std::uint64_t next;    // the term that would continue it
+  std::uint64_t stride;  // from term to term, in the number's arithmetic; 0 while there is but one
+  std::uint32_t place, left;  // how many terms may follow before an operand would not precede the sum
+
+  std::ptrdiff_t stride_b() const { return std::int32_t(std::uint32_t(stride)); }
+  std::ptrdiff_t stride_a() const { return std::int32_t(std::uint32_t((stride - std::uint64_t(stride_b())) >> 32)); }
+  std::uint32_t size() const {
+    if (stride == 0) return 1;
+    return static_cast<std::uint32_t>(stride_b() != 0 ? (std::int64_t(Term{next}.b()) - first.b()) / stride_b()
+                                                      : (std::int64_t(Term{next}.a()) - first.a()) / stride_a());
+  }
+};
+
+template <class T>
+class TapeRecords {
+ public:
+  using Place = std::uint32_t;
+  using Pullback = std::function<void(std::span<const T> results, std::span<T> operands)>;
+
+  void clear() {
+    size_ = 1;
+    weight_count_ = 0;
+    runs_.clear();
+    functions_.clear();
+    if (nodes_.empty()) grow();
+  }
+  std::size_t size() const { return size_; }
+  T& value(Place p) { return values_[p]; }
+  const T& adjoint(Place p) const { return adjoints_[p]; }
+  std::size_t adjoint_count() const { return adjoints_.size(); }
+
+  /// A result w with derivative da in place a and db in place b; place 0 takes what nobody asks for.
+  DSNS_INLINE Place push(Place a, const T& da, Place b, const T& db, const T& w) {
+    if (size_ == capacity_) [[unlikely]]
+      grow();
+    nodes_[size_] = {a, b, da, db};
+    values_[size_] = w;
+    return size_++;
+  }
+
+  DSNS_INLINE Place push_weight(const T& w) {
+    if (weight_count_ == weights_.size()) [[unlikely]]
+      grow_weights();
+    weights_[weight_count_] = w;
+    return weight_count_++;
+  }
+  const T& weight(Place k) const { return weights_[k]; }
+
+  /// A sum of base (0: none) and one term, which further terms may follow. The run's index.
+  Place open_run(Place base, Term term) {
+    const Place p = push(base, T(1), 0, T(0), T(0));
+    runs_.push_back({term, 0, 0, p, 0});
+    return static_cast<Place>(runs_.size() - 1);
+  }
+  Place run_place(Place r) const { return runs_[r].place; }
+  /// Whether the term continues the run; then it is part of it.
+  DSNS_INLINE bool extend_run(Place r, Term term) {
+    Run& run = runs_[r];
+    if (run.next == term.bits && run.left != 0) [[likely]] {
+      run.next += run.stride;
+      --run.left;
+      return true;
+    }
+    return second_term(run, term);
+  }
+
+  /// Consecutive places for the results of a function that supplies its own pullback. Returns the first.
+  Place push_function(std::vector<Place> operands, std::span<const T> results, Pullback pullback) {
+    const Place first = size_;
+    for (const T& w : results) push(0, T(0), 0, T(0), w);
+    functions_.push_back({first, static_cast<Place>(results.size()), std::move(operands), std::move(pullback)});
+    return first;
+  }
+
+  /// Adjoints of all places for the result at `last`, whose own is `seed`.
+  void sweep(Place last, const T& seed) {
+    adjoints_.assign(size_, T(0));
+    adjoints_[last] = seed;
+    std::size_t r = runs_.size(), f = functions_.size();
+    while (r > 0 && runs_[r - 1].place > last) --r;
+    while (f > 0 && functions_[f - 1].place > last) --f;
+    for (Place i = last; i > 0;) {
+      const Place run = r > 0 ? runs_[r - 1].place : 0, function = f > 0 ? functions_[f - 1].place : 0;
+      const Place stop = std::max(run, function);
+      back_nodes(i, stop);
+      if (stop == 0) return;
+      if (stop == run) back(runs_[--r]);
+      if (stop == function) back(functions_[--f]);
+      back_nodes(stop, stop - 1);
+      i = stop - 1;
+    }
+  }
+
+  std::size_t bytes() const {
+    return size_ * (sizeof(Node) + 2 * sizeof(T)) + weight_count_ * sizeof(T) + runs_.size() * sizeof(Run);
+  }
+
+ private:
+  struct Node {
+    Place a, b;
+    T da, db;
+  };
+  struct Function {
+    Place place, results;
+    std::vector<Place> operands;
+    Pullback pullback;
+  };
+
+  [[gnu::noinline]] static bool second_term(Run& run, Term term) {
+    const Term first = run.first;
+    constexpr std::uint64_t kind = Term::weighted | Term::negative;
+    if (run.stride != 0 || (term.bits & kind) != (first.bits & kind)) return false;
+    const std::int64_t sa = std::int64_t(term.a()) - first.a(), sb = std::int64_t(term.b()) - first.b();
+    const std::int64_t a_left = term.is_weighted() ? unlimited : terms_before(run.place, term.a(), sa);
+    const std::int64_t b_left = terms_before(run.place, term.b(), sb);
+    if (a_left < 0 || b_left < 0 || (sa == 0 && sb == 0)) return false;
+    run.stride = (std::uint64_t(sa) << 32) + std::uint64_t(sb);
+    run.next = term.bits + run.stride;
+    run.left = static_cast<std::uint32_t>(std::min(a_left, b_left));
+    return true;
+  }
+  static constexpr std::int64_t unlimited = std::numeric_limits<std::uint32_t>::max();
+  /// How many operands may follow p at this stride that lie between 1 and place; -1 where p itself does not.
+  static std::int64_t terms_before(std::int64_t place, std::int64_t p, std::int64_t stride) {
+    if (p >= place) return -1;
+    if (stride == 0) return unlimited;
+    return stride > 0 ? (place - 1 - p) / stride : (p - 1) / -stride;
+  }
+
+  /// Nodes last, last - 1, ... down to `stop`, without it.
+  void back_nodes(Place last, Place stop) {
+    const Node* const nodes = nodes_.data();
+    T* const adjoints = adjoints_.data();
+    for (Place i = last; i > stop; --i) {
+      const Node& n = nodes[i];
+      const T w = adjoints[i];
+      adjoints[n.a] += w * n.da;
+      adjoints[n.b] += w * n.db;
+    }
+  }
+
+  void back(const Run& run) {
+    const T w = run.first.is_negative() ? T(-adjoints_[run.place]) : T(adjoints_[run.place]);
+    const std::ptrdiff_t n = run.size(), sa = run.stride_a(), sb = run.stride_b();
+    const Place a = run.first.a(), b = run.first.b();
+    if (run.first.is_weighted()) {
+      add_multiple(adjoints_.data() + b, sb, w, weights_.data() + a, sa, n);
+    } else {
+      add_multiple(adjoints_.data() + a, sa, w, values_.data() + b, sb, n);
+      add_multiple(adjoints_.data() + b, sb, w, values_.data() + a, sa, n);
+    }
+  }
+  /// y += w x, with strides; x and y are different arrays.
+  static void add_multiple(T* __restrict y, std::ptrdiff_t sy, const T& w, const T* __restrict x, std::ptrdiff_t sx,
+                           std::ptrdiff_t n) {
+    if (sx == 1 && sy == 1)
+      for (std::ptrdiff_t k = 0; k < n; ++k) y[k] += w * x[k];
+    else if (sy == 1)
+      for (std::ptrdiff_t k = 0; k < n; ++k) y[k] += w * x[k * sx];
+    else
+      for (std::ptrdiff_t k = 0; k < n; ++k) y[k * sy] += w * x[k * sx];
+  }
+
+  void back(const Function& f) {
+    const std::vector<T> results(adjoints_.begin() + f.place, adjoints_.begin() + f.place + f.results);
+    std::vector<T> operands(f.operands.size(), T(0));
+    f.pullback(results, operands);
+    for (std::size_t k = 0; k < operands.size(); ++k) adjoints_[f.operands[k]] += operands[k];
+  }
+
+  [[gnu::noinline]] void grow() {
+    const std::size_t capacity = nodes_.empty() ? 256 : 2 * nodes_.size();
+    if (capacity > std::size_t(std::numeric_limits<Place>::max()))
+      throw InvalidArgument("Tape: more than 2^31 operations in one recording");
+    nodes_.resize(capacity);
+    values_.resize(capacity);
+    capacity_ = static_cast<Place>(capacity);
+  }
+  [[gnu::noinline]] void grow_weights() {
+    if (weights_.size() > std::size_t(std::numeric_limits<Place>::max() / 4))
+      throw InvalidArgument("Tape: more than 2^30 constant factors in one recording");
+    weights_.resize(std::max<std::size_t>(256, 2 * weights_.size()));
+  }
+
+  std::vector<Node> nodes_;  // and values_: capacity_ of them, size_ in use
+  std::vector<T> values_;
+  Place size_ = 1, capacity_ = 0;
+  std::vector<T> weights_;  // weight_count_ in use
+  Place weight_count_ = 0;
+  std::vector<T> adjoints_;
+  std::vector<Run> runs_;  // by place
+  std::vector<Function> functions_;
+};
+
+}  // namespace dsns::detail
