@@ -1,6 +1,7 @@
 // Ours.
 #include "methods.hpp"
 
+#include <dsns/autodiff/batch.hpp>
 #include <dsns/autodiff/dual.hpp>
 #include <dsns/autodiff/jet2.hpp>
 #include <dsns/autodiff/matrix.hpp>
@@ -36,6 +37,42 @@ Method forward() {
         out[i].f_uv[c] = f[c].h[1];
         out[i].f_vv[c] = f[c].h[2];
       }
+    }
+  };
+  return m;
+}
+
+Method batched() {
+  Method m{"dsns Dual, Jet2 over a batch"};
+  using B = Batch<double>;
+  m.first_order = [](const SurfacePoints& p, std::vector<FirstOrder>& out) {
+    using D = Dual<B, 3>;
+    for (std::size_t i = 0; i + B::lanes <= p.size(); i += B::lanes) {
+      const auto f = workloads::moving_surface(D::variable(B::load(&p.u[i]), 0), D::variable(B::load(&p.v[i]), 1),
+                                               D::variable(B::load(&p.t[i]), 2));
+      for (int lane = 0; lane < B::lanes; ++lane)
+        for (std::size_t c = 0; c < 3; ++c) {
+          FirstOrder& o = out[i + std::size_t(lane)];
+          o.f[c] = f[c].f[lane];
+          for (std::size_t k = 0; k < 3; ++k) o.jacobian[c][k] = f[c].g[k][lane];
+        }
+    }
+  };
+  m.second_order = [](const SurfacePoints& p, std::vector<SecondOrder>& out) {
+    using J = Jet2<B, 2>;
+    for (std::size_t i = 0; i + B::lanes <= p.size(); i += B::lanes) {
+      const auto f = workloads::moving_surface(J::variable(B::load(&p.u[i]), 0), J::variable(B::load(&p.v[i]), 1),
+                                               B::load(&p.t[i]));
+      for (int lane = 0; lane < B::lanes; ++lane)
+        for (std::size_t c = 0; c < 3; ++c) {
+          SecondOrder& o = out[i + std::size_t(lane)];
+          o.f[c] = f[c].f[lane];
+          o.f_u[c] = f[c].g[0][lane];
+          o.f_v[c] = f[c].g[1][lane];
+          o.f_uu[c] = f[c].h[0][lane];
+          o.f_uv[c] = f[c].h[1][lane];
+          o.f_vv[c] = f[c].h[2][lane];
+        }
     }
   };
   return m;
@@ -179,4 +216,4 @@ Method matrix_nodes() {
 
 }  // namespace
 
-std::vector<Method> dsns_methods() { return {forward(), reverse(), matrix_nodes()}; }
+std::vector<Method> dsns_methods() { return {forward(), batched(), reverse(), matrix_nodes()}; }

@@ -27,7 +27,7 @@ struct Dual {
   template <class S>
   requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) DSNS_INLINE Dual(const S& s)
       : f(static_cast<T>(s)), g(Tangents<T, N>::zero()) {}
-  DSNS_INLINE Dual(const T& f_, const Tangents<T, N>& g_) : f(f_), g(g_) {}
+  DSNS_INLINE Dual(T f_, Tangents<T, N> g_) : f(std::move(f_)), g(std::move(g_)) {}
   /// The k-th independent variable: derivative 1 in direction k, 0 in the others.
   DSNS_INLINE static Dual variable(const T& x0, int k) { return Dual(x0, Tangents<T, N>::unit(k)); }
 

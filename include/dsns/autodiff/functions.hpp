@@ -37,18 +37,18 @@ T silu(T x) {
 }
 
 template <Differentiable X>
-X sqr(const X& x) {
+DSNS_INLINE X sqr(const X& x) {
   return x * x;
 }
 
 template <Differentiable X>
-X abs(const X& x) {
+DSNS_INLINE X abs(const X& x) {
   using T = typename X::Inner;
   if (x.f == 0) return chain(x, T(0), T(0), [] { return T(0); });
   return x.f < 0 ? -x : x;
 }
 template <Differentiable X>
-X fabs(const X& x) {
+DSNS_INLINE X fabs(const X& x) {
   return abs(x);
 }
 
@@ -69,7 +69,7 @@ bool isinf(const X& x) {
 }
 
 template <Differentiable X>
-X sqrt(const X& x) {
+DSNS_INLINE X sqrt(const X& x) {
   using std::sqrt;
   const auto f = sqrt(x.f);
   const auto d = 1 / (2 * f);
@@ -77,7 +77,7 @@ X sqrt(const X& x) {
 }
 
 template <Differentiable X>
-X cbrt(const X& x) {
+DSNS_INLINE X cbrt(const X& x) {
   using std::cbrt;
   const auto f = cbrt(x.f);
   const auto d = 1 / (3 * f * f);
@@ -85,21 +85,21 @@ X cbrt(const X& x) {
 }
 
 template <Differentiable X>
-X exp(const X& x) {
+DSNS_INLINE X exp(const X& x) {
   using std::exp;
   const auto f = exp(x.f);
   return chain(x, f, f, [&] { return f; });
 }
 
 template <Differentiable X>
-X expm1(const X& x) {
+DSNS_INLINE X expm1(const X& x) {
   using std::exp, std::expm1;
   const auto d = exp(x.f);
   return chain(x, expm1(x.f), d, [&] { return d; });
 }
 
 template <Differentiable X>
-X exp2(const X& x) {
+DSNS_INLINE X exp2(const X& x) {
   using std::exp2;
   const auto ln2 = Passive<X>(0.693147180559945309417232121458176568L);
   const auto f = exp2(x.f);
@@ -107,28 +107,28 @@ X exp2(const X& x) {
 }
 
 template <Differentiable X>
-X log(const X& x) {
+DSNS_INLINE X log(const X& x) {
   using std::log;
   const auto d = 1 / x.f;
   return chain(x, log(x.f), d, [&] { return -d * d; });
 }
 
 template <Differentiable X>
-X log1p(const X& x) {
+DSNS_INLINE X log1p(const X& x) {
   using std::log1p;
   const auto d = 1 / (1 + x.f);
   return chain(x, log1p(x.f), d, [&] { return -d * d; });
 }
 
 template <Differentiable X>
-X log2(const X& x) {
+DSNS_INLINE X log2(const X& x) {
   using std::log2;
   const auto d = Passive<X>(1.442695040888963407359924681001892137L) / x.f;
   return chain(x, log2(x.f), d, [&] { return -d / x.f; });
 }
 
 template <Differentiable X>
-X log10(const X& x) {
+DSNS_INLINE X log10(const X& x) {
   using std::log10;
   const auto d = Passive<X>(0.434294481903251827651128918916605082L) / x.f;
   return chain(x, log10(x.f), d, [&] { return -d / x.f; });
@@ -168,18 +168,18 @@ DSNS_INLINE SineCosine<X> sincos(const X& x) {
 }
 
 template <Differentiable X>
-X sin(const X& x) {
+DSNS_INLINE X sin(const X& x) {
   const auto a = sincos(x.f);
   return chain(x, a.sine, a.cosine, [&] { return -a.sine; });
 }
 template <Differentiable X>
-X cos(const X& x) {
+DSNS_INLINE X cos(const X& x) {
   const auto a = sincos(x.f);
   return chain(x, a.cosine, -a.sine, [&] { return -a.cosine; });
 }
 
 template <Differentiable X>
-X tan(const X& x) {
+DSNS_INLINE X tan(const X& x) {
   using std::tan;
   const auto f = tan(x.f);
   const auto d = 1 + f * f;
@@ -187,7 +187,7 @@ X tan(const X& x) {
 }
 
 template <Differentiable X>
-X asin(const X& x) {
+DSNS_INLINE X asin(const X& x) {
   using std::asin, std::sqrt;
   const auto r = (1 - x.f) * (1 + x.f);
   const auto d = 1 / sqrt(r);
@@ -195,7 +195,7 @@ X asin(const X& x) {
 }
 
 template <Differentiable X>
-X acos(const X& x) {
+DSNS_INLINE X acos(const X& x) {
   using std::acos, std::sqrt;
   const auto r = (1 - x.f) * (1 + x.f);
   const auto d = -1 / sqrt(r);
@@ -203,28 +203,28 @@ X acos(const X& x) {
 }
 
 template <Differentiable X>
-X atan(const X& x) {
+DSNS_INLINE X atan(const X& x) {
   using std::atan;
   const auto d = 1 / (1 + x.f * x.f);
   return chain(x, atan(x.f), d, [&] { return -2 * x.f * d * d; });
 }
 
 template <Differentiable X>
-X sinh(const X& x) {
+DSNS_INLINE X sinh(const X& x) {
   using std::cosh, std::sinh;
   const auto f = sinh(x.f);
   return chain(x, f, cosh(x.f), [&] { return f; });
 }
 
 template <Differentiable X>
-X cosh(const X& x) {
+DSNS_INLINE X cosh(const X& x) {
   using std::cosh, std::sinh;
   const auto f = cosh(x.f);
   return chain(x, f, sinh(x.f), [&] { return f; });
 }
 
 template <Differentiable X>
-X tanh(const X& x) {
+DSNS_INLINE X tanh(const X& x) {
   using std::tanh;
   const auto f = tanh(x.f);
   const auto d = (1 - f) * (1 + f);
@@ -232,7 +232,7 @@ X tanh(const X& x) {
 }
 
 template <Differentiable X>
-X asinh(const X& x) {
+DSNS_INLINE X asinh(const X& x) {
   using std::asinh, std::sqrt;
   const auto r = 1 + x.f * x.f;
   const auto d = 1 / sqrt(r);
@@ -240,7 +240,7 @@ X asinh(const X& x) {
 }
 
 template <Differentiable X>
-X acosh(const X& x) {
+DSNS_INLINE X acosh(const X& x) {
   using std::acosh, std::sqrt;
   const auto r = (x.f - 1) * (x.f + 1);
   const auto d = 1 / sqrt(r);
@@ -248,21 +248,21 @@ X acosh(const X& x) {
 }
 
 template <Differentiable X>
-X atanh(const X& x) {
+DSNS_INLINE X atanh(const X& x) {
   using std::atanh;
   const auto d = 1 / ((1 - x.f) * (1 + x.f));
   return chain(x, atanh(x.f), d, [&] { return 2 * x.f * d * d; });
 }
 
 template <Differentiable X>
-X erf(const X& x) {
+DSNS_INLINE X erf(const X& x) {
   using std::erf, std::exp;
   const auto d = Passive<X>(1.128379167095512573896158903121545172L) * exp(-x.f * x.f);  // 2 / sqrt(pi)
   return chain(x, erf(x.f), d, [&] { return -2 * x.f * d; });
 }
 
 template <Differentiable X>
-X sigmoid(const X& x) {
+DSNS_INLINE X sigmoid(const X& x) {
   const auto f = sigmoid(x.f);
   const auto rest = sigmoid(-x.f);  // 1 - f without cancellation
   const auto d = f * rest;
@@ -270,13 +270,13 @@ X sigmoid(const X& x) {
 }
 
 template <Differentiable X>
-X softplus(const X& x) {
+DSNS_INLINE X softplus(const X& x) {
   const auto d = sigmoid(x.f);
   return chain(x, softplus(x.f), d, [&] { return d * sigmoid(-x.f); });
 }
 
 template <Differentiable X>
-X silu(const X& x) {
+DSNS_INLINE X silu(const X& x) {
   const auto s = sigmoid(x.f);
   const auto rest = sigmoid(-x.f);
   return chain(x, x.f * s, s + x.f * s * rest, [&] { return s * rest * (2 + x.f * (rest - s)); });

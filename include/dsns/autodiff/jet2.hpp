@@ -5,8 +5,8 @@
 ///   const auto u = Jet2<double>::variable(0.3, 0), v = Jet2<double>::variable(0.4, 1);
 ///   const auto y = sin(u * v);                       // y.g = {y_u, y_v}, y.h = {y_uu, y_uv, y_vv}
 #include <dsns/autodiff/functions.hpp>
+#include <dsns/autodiff/tangents.hpp>
 
-#include <array>
 #include <compare>
 #include <cstddef>
 #include <utility>
@@ -20,27 +20,22 @@ struct Jet2 {
   static constexpr int packed = N * (N + 1) / 2;
 
   T f;
-  std::array<T, std::size_t(N)> g;
-  std::array<T, std::size_t(packed)> h;  ///< upper triangle, row by row
+  Tangents<T, N> g;
+  Tangents<T, packed> h;  ///< upper triangle, row by row
 
   Jet2() = default;
   /// A constant.
   template <class S>
   requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) DSNS_INLINE Jet2(const S& s)
-      : f(static_cast<T>(s)) {
-    g.fill(T(0));
-    h.fill(T(0));
-  }
-  Jet2(const T& f_, const std::array<T, std::size_t(N)>& g_, const std::array<T, std::size_t(packed)>& h_)
-      : f(f_), g(g_), h(h_) {}
+      : f(static_cast<T>(s)), g(Tangents<T, N>::zero()), h(Tangents<T, packed>::zero()) {}
+  DSNS_INLINE Jet2(T f_, Tangents<T, N> g_, Tangents<T, packed> h_)
+      : f(std::move(f_)), g(std::move(g_)), h(std::move(h_)) {}
   /// The k-th independent variable.
-  static Jet2 variable(const T& x0, int k) {
-    Jet2 x(x0);
-    x.g[static_cast<std::size_t>(k)] = T(1);
-    return x;
+  DSNS_INLINE static Jet2 variable(const T& x0, int k) {
+    return Jet2(x0, Tangents<T, N>::unit(k), Tangents<T, packed>::zero());
   }
   /// The second derivative in variables i and j.
-  const T& hessian(int i, int j) const {
+  T hessian(int i, int j) const {
     const int a = i < j ? i : j, b = i < j ? j : i;
     return h[static_cast<std::size_t>(a * N - a * (a + 1) / 2 + b)];
   }
@@ -51,16 +46,22 @@ struct Jet2 {
     const T d2 = second();
     Jet2 r;
     r.f = w;
-    for (std::size_t i = 0, m = 0; i < N; ++i) {
-      r.g[i] = d * x.g[i];
-      const T bend = d2 * x.g[i];
-      for (std::size_t j = i; j < N; ++j, ++m) r.h[m] = d * x.h[m] + bend * x.g[j];
+    if constexpr (vectors) {
+      r.g.v = d * x.g.v;
+      r.h.v = d * x.h.v + d2 * (of_row(x) * of_column(x));
+    } else {
+      for (std::size_t i = 0, m = 0; i < N; ++i) {
+        r.g[i] = d * x.g[i];
+        const T bend = d2 * x.g[i];
+        for (std::size_t j = i; j < N; ++j, ++m) r.h[m] = d * x.h[m] + bend * x.g[j];
+      }
     }
     return r;
   }
   /// w(x, y) for a function with value w, partial derivatives wx, wy and second derivatives second() = {xx, xy, yy}.
   template <class Second>
-  DSNS_INLINE friend Jet2 chain(const Jet2& x, const Jet2& y, const T& w, const T& wx, const T& wy, const Second& second) {
+  DSNS_INLINE friend Jet2 chain(const Jet2& x, const Jet2& y, const T& w, const T& wx, const T& wy,
+                                const Second& second) {
     const auto s = second();
     Jet2 r;
     r.f = w;
@@ -80,20 +81,26 @@ struct Jet2 {
 
   DSNS_INLINE friend Jet2 operator+(const Jet2& a) { return a; }
   DSNS_INLINE friend Jet2 operator-(const Jet2& a) {
-    return each(a, [](const T& x) { return -x; });
+    return each(a, [](const auto& x) { return -x; });
   }
   DSNS_INLINE friend Jet2 operator+(const Jet2& a, const Jet2& b) {
-    return each(a, b, [](const T& x, const T& y) { return x + y; });
+    return each(a, b, [](const auto& x, const auto& y) { return x + y; });
   }
   DSNS_INLINE friend Jet2 operator-(const Jet2& a, const Jet2& b) {
-    return each(a, b, [](const T& x, const T& y) { return x - y; });
+    return each(a, b, [](const auto& x, const auto& y) { return x - y; });
   }
   DSNS_INLINE friend Jet2 operator*(const Jet2& a, const Jet2& b) {
     Jet2 r;
     r.f = a.f * b.f;
-    for (std::size_t i = 0, m = 0; i < N; ++i) {
-      r.g[i] = a.f * b.g[i] + b.f * a.g[i];
-      for (std::size_t j = i; j < N; ++j, ++m) r.h[m] = a.f * b.h[m] + b.f * a.h[m] + a.g[i] * b.g[j] + a.g[j] * b.g[i];
+    if constexpr (vectors) {
+      r.g.v = a.f * b.g.v + b.f * a.g.v;
+      r.h.v = a.f * b.h.v + b.f * a.h.v + of_row(a) * of_column(b) + of_column(a) * of_row(b);
+    } else {
+      for (std::size_t i = 0, m = 0; i < N; ++i) {
+        r.g[i] = a.f * b.g[i] + b.f * a.g[i];
+        for (std::size_t j = i; j < N; ++j, ++m)
+          r.h[m] = a.f * b.h[m] + b.f * a.h[m] + a.g[i] * b.g[j] + a.g[j] * b.g[i];
+      }
     }
     return r;
   }
@@ -101,10 +108,15 @@ struct Jet2 {
     Jet2 r;
     const T inverse = 1 / b.f;
     r.f = a.f / b.f;
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = (a.g[i] - r.f * b.g[i]) * inverse;
-    for (std::size_t i = 0, m = 0; i < N; ++i)  // from a = r b
-      for (std::size_t j = i; j < N; ++j, ++m)
-        r.h[m] = (a.h[m] - r.f * b.h[m] - r.g[i] * b.g[j] - r.g[j] * b.g[i]) * inverse;
+    if constexpr (vectors) {  // from a = r b
+      r.g.v = (a.g.v - r.f * b.g.v) * inverse;
+      r.h.v = (a.h.v - r.f * b.h.v - of_row(r) * of_column(b) - of_column(r) * of_row(b)) * inverse;
+    } else {
+      for (std::size_t i = 0; i < N; ++i) r.g[i] = (a.g[i] - r.f * b.g[i]) * inverse;
+      for (std::size_t i = 0, m = 0; i < N; ++i)
+        for (std::size_t j = i; j < N; ++j, ++m)
+          r.h[m] = (a.h[m] - r.f * b.h[m] - r.g[i] * b.g[j] - r.g[j] * b.g[i]) * inverse;
+    }
     return r;
   }
 
@@ -129,7 +141,7 @@ struct Jet2 {
   template <PassiveFor<Jet2> S>
   DSNS_INLINE friend Jet2 operator*(const Jet2& a, const S& s) {
     const auto& c = detail::constant<Jet2>(s);
-    return each(a, [&c](const T& x) { return x * c; });
+    return each(a, [&c](const auto& x) { return x * c; });
   }
   template <PassiveFor<Jet2> S>
   DSNS_INLINE friend Jet2 operator*(const S& s, const Jet2& a) {
@@ -138,7 +150,7 @@ struct Jet2 {
   template <PassiveFor<Jet2> S>
   DSNS_INLINE friend Jet2 operator/(const Jet2& a, const S& s) {
     const auto& c = detail::constant<Jet2>(s);
-    return each(a, [&c](const T& x) { return x / c; });
+    return each(a, [&c](const auto& x) { return x / c; });
   }
   template <PassiveFor<Jet2> S>
   DSNS_INLINE friend Jet2 operator/(const S& s, const Jet2& a) {
@@ -149,14 +161,14 @@ struct Jet2 {
   /// By value, so that a temporary's entries are added as the temporaries they are (see Var).
   DSNS_INLINE Jet2& operator+=(Jet2 b) {
     f += std::move(b.f);
-    for (std::size_t i = 0; i < N; ++i) g[i] += std::move(b.g[i]);
-    for (std::size_t m = 0; m < packed; ++m) h[m] += std::move(b.h[m]);
+    g += std::move(b.g);
+    h += std::move(b.h);
     return *this;
   }
   DSNS_INLINE Jet2& operator-=(Jet2 b) {
     f -= std::move(b.f);
-    for (std::size_t i = 0; i < N; ++i) g[i] -= std::move(b.g[i]);
-    for (std::size_t m = 0; m < packed; ++m) h[m] -= std::move(b.h[m]);
+    g -= std::move(b.g);
+    h -= std::move(b.h);
     return *this;
   }
   DSNS_INLINE Jet2& operator*=(const Jet2& b) { return *this = *this * b; }
@@ -175,21 +187,17 @@ struct Jet2 {
   }
 
  private:
+  static constexpr bool vectors = N == 2 && Tangents<T, N>::is_vector && Tangents<T, packed>::is_vector;
+  DSNS_INLINE static auto of_row(const Jet2& x) { return detail::of_row(x.g).v; }
+  DSNS_INLINE static auto of_column(const Jet2& x) { return detail::of_column(x.g).v; }
+
   template <class Op>
   DSNS_INLINE static Jet2 each(const Jet2& a, const Op& op) {
-    Jet2 r;
-    r.f = op(a.f);
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = op(a.g[i]);
-    for (std::size_t m = 0; m < packed; ++m) r.h[m] = op(a.h[m]);
-    return r;
+    return Jet2(op(a.f), Tangents<T, N>::each(op, a.g), Tangents<T, packed>::each(op, a.h));
   }
   template <class Op>
   DSNS_INLINE static Jet2 each(const Jet2& a, const Jet2& b, const Op& op) {
-    Jet2 r;
-    r.f = op(a.f, b.f);
-    for (std::size_t i = 0; i < N; ++i) r.g[i] = op(a.g[i], b.g[i]);
-    for (std::size_t m = 0; m < packed; ++m) r.h[m] = op(a.h[m], b.h[m]);
-    return r;
+    return Jet2(op(a.f, b.f), Tangents<T, N>::each(op, a.g, b.g), Tangents<T, packed>::each(op, a.h, b.h));
   }
 };
 

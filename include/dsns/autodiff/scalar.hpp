@@ -6,8 +6,12 @@
 /// For operators of a few instructions each, which compilers count as calls when they decide what to inline.
 #if defined(__GNUC__)
 #define DSNS_INLINE [[gnu::always_inline]] inline
+#define DSNS_INLINE_LAMBDA __attribute__((always_inline))
+#define DSNS_UNREACHABLE __builtin_unreachable()
 #else
 #define DSNS_INLINE inline
+#define DSNS_INLINE_LAMBDA
+#define DSNS_UNREACHABLE static_cast<void>(0)
 #endif
 
 namespace dsns {

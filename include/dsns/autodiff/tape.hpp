@@ -28,23 +28,25 @@ class Tape;
 
 namespace detail {
 
-enum class VarState : std::uint32_t {
-  exact,    // a constant, or recorded with this value
-  shifted,  // recorded but for a constant added since
-  term,     // not recorded: the term `operands`
-  open      // recorded but for the value; terms may be added to the run operands >> 32
-};
-
 /// What a variable is besides its value. Small enough to be passed in registers.
 struct VarTerms {
-  std::uint64_t operands = 0;   // a term, or the place in the lower half
-  std::uint32_t recording = 0;  // 0 is a constant
-  VarState state = VarState::exact;
+  // States, in the upper half of the tag; the lower is the recording.
+  static constexpr std::uint64_t exact = 0;                        // a constant, or recorded with this value
+  static constexpr std::uint64_t shifted = std::uint64_t(1) << 32;  // recorded but for a constant added since
+  static constexpr std::uint64_t term = std::uint64_t(2) << 32;     // not recorded: a Term
+  static constexpr std::uint64_t open = std::uint64_t(3) << 32;     // recorded but for the value: terms may be added to a Run
 
+  std::uint64_t operands = 0;  // the place, the Term or the address of the Run
+  std::uint64_t tag = 0;       // 0 is a constant
+
+  std::uint64_t recording() const { return tag & 0xffffffffu; }
+  std::uint64_t state() const { return tag & ~std::uint64_t(0xffffffffu); }
   std::uint32_t place() const { return static_cast<std::uint32_t>(operands); }
-  bool settled() const { return state <= VarState::shifted; }
+  Run& run() const { return *reinterpret_cast<Run*>(operands); }
+  bool is_constant() const { return tag == 0; }
+  bool settled() const { return tag < term; }
   void shift() {
-    if (recording != 0 && state == VarState::exact) state = VarState::shifted;
+    if (tag != 0 && tag < shifted) tag += shifted;
   }
 };
 
@@ -92,20 +94,18 @@ struct Var {
 
   /// w(x) for a function with value w and derivative d at x.f.
   template <class Second>
-  friend Var chain(const Var& x, const T& w, const T& d, const Second&) {
-    if (x.t_.recording == 0) return Var(w);
+  DSNS_INLINE friend Var chain(const Var& x, const T& w, const T& d, const Second&) {
     x.settle();
-    return Var(w, recorded(x.t_.recording, records(x.t_).push(x.t_.place(), d, 0, T(0), w)));
+    return Var(w, push(x.t_, d, w));
   }
   /// w(x, y) for a function with value w and partial derivatives wx, wy.
   template <class Second>
-  friend Var chain(const Var& x, const Var& y, const T& w, const T& wx, const T& wy, const Second&) {
-    if (x.t_.recording == 0 && y.t_.recording == 0) return Var(w);
+  DSNS_INLINE friend Var chain(const Var& x, const Var& y, const T& w, const T& wx, const T& wy, const Second&) {
     x.settle();
     y.settle();
-    return Var(w, join(x.t_, wx, y.t_, wy, w));
+    return Var(w, push(x.t_, wx, y.t_, wy, w));
   }
-  friend bool derivatives_vanish(const Var& x) { return x.t_.recording == 0 && detail::inert(x.f); }
+  friend bool derivatives_vanish(const Var& x) { return x.t_.is_constant() && detail::inert(x.f); }
 
   friend Var operator+(Var a) { return a; }
   DSNS_INLINE friend Var operator-(Var a) {
@@ -123,7 +123,7 @@ struct Var {
   DSNS_INLINE friend Var operator*(Var a, Var b) {
     const T w = a.f * b.f;
     if (exact_and_active(a.t_) && exact_and_active(b.t_)) [[likely]]
-      return Var(w, {detail::Term::of(a.t_.place(), b.t_.place(), 0).bits, a.t_.recording, State::term});
+      return Var(w, {(a.t_.operands << 32) | b.t_.operands, a.t_.tag | Terms::term});
     return Var(w, general_product(a.t_, b.t_, a.f, b.f));
   }
   friend Var operator/(const Var& a, const Var& b) {
@@ -203,7 +203,6 @@ struct Var {
  private:
   friend class Tape<T>;
   using Terms = detail::VarTerms;
-  using State = detail::VarState;
   using Term = detail::Term;
   static constexpr auto none = [] {};
 
@@ -211,30 +210,31 @@ struct Var {
 
   DSNS_INLINE Var(const T& w, const Terms& t) : f(w), t_(t) {}
 
-  DSNS_INLINE static auto& records(const Terms& t) { return Tape<T>::active(t.recording); }
-  DSNS_INLINE static Terms recorded(std::uint32_t recording, std::uint32_t place) {
-    return {place, recording, State::exact};
-  }
+  DSNS_INLINE static auto& records(const Terms& t) { return Tape<T>::active(t.recording()); }
+  DSNS_INLINE static Terms recorded(std::uint64_t recording, std::uint32_t place) { return {place, recording}; }
   DSNS_INLINE static bool exact_and_active(const Terms& t) {
-    return t.state == State::exact && Tape<T>::is_active(t.recording);
+    if (!Tape<T>::is_active(t.tag)) return false;
+    if (t.state() != 0) DSNS_UNREACHABLE;
+    return true;
   }
 
   DSNS_INLINE void settle() const {
     if (!t_.settled()) [[unlikely]]
-      t_ = recorded(t_.recording, place_of(t_, f));
+      t_ = recorded(t_.recording(), place_of(t_, f));
   }
   /// A sum has one owner, who may add to it.
   DSNS_INLINE void close() const {
-    if (t_.state == State::open) [[unlikely]]
-      t_ = recorded(t_.recording, place_of(t_, f));
+    if (t_.tag >= Terms::open) [[unlikely]]
+      t_ = recorded(t_.recording(), place_of(t_, f));
   }
   /// The place of terms with value w, recorded now where they have none.
   [[gnu::noinline]] static std::uint32_t place_of(Terms t, T w) {
     if (t.settled()) return t.place();
     auto& tape = records(t);
-    if (t.state == State::open) {
-      tape.value(t.place()) = w;
-      return t.place();
+    if (t.state() == Terms::open) {
+      const std::uint32_t p = t.run().place;
+      tape.value(p) = w;
+      return p;
     }
     const Term term{t.operands};
     if (term.is_weighted()) return tape.push(term.b(), T(tape.weight(term.a())), 0, T(0), w);
@@ -242,14 +242,19 @@ struct Var {
     return tape.push(term.a(), T(sign * tape.value(term.b())), term.b(), T(sign * tape.value(term.a())), w);
   }
 
-  /// A result w with derivatives wx, wy in the settled x and y; one may be a constant.
-  DSNS_INLINE static Terms join(const Terms& x, const T& wx, const Terms& y, const T& wy, const T& w) {
-    const Terms& active = x.recording != 0 ? x : y;
+  /// A result w with derivative d in the settled x, or with wx and wy in x and y; they may be constants.
+  [[gnu::noinline]] static Terms push(Terms x, T d, T w) {
+    if (x.is_constant()) return x;
+    return recorded(x.recording(), records(x).push(x.place(), d, 0, T(0), w));
+  }
+  [[gnu::noinline]] static Terms push(Terms x, T wx, Terms y, T wy, T w) {
+    if (x.is_constant() && y.is_constant()) return x;
+    const Terms& active = x.is_constant() ? y : x;
     check(x, y);
-    return recorded(active.recording, records(active).push(x.place(), wx, y.place(), wy, w));
+    return recorded(active.recording(), records(active).push(x.place(), wx, y.place(), wy, w));
   }
   DSNS_INLINE static void check(const Terms& x, const Terms& y) {
-    if (x.recording != y.recording && x.recording != 0 && y.recording != 0) [[unlikely]]
+    if (x.recording() != y.recording() && !x.is_constant() && !y.is_constant()) [[unlikely]]
       mixed();
   }
   [[noreturn, gnu::cold]] static void mixed() {
@@ -259,29 +264,28 @@ struct Var {
   /// The terms of x +- y, whose value is w.
   DSNS_INLINE static Terms sum(const Terms& x, const Terms& y, bool negative, const T& xf, const T& yf, const T& w) {
     if (!exact_and_active(x) || !exact_and_active(y)) return general_sum(x, y, negative, xf, yf, w);
-    return recorded(x.recording, records(x).push(x.place(), T(1), y.place(), T(negative ? -1 : 1), w));
+    return recorded(x.tag, records(x).push(x.place(), T(1), y.place(), T(negative ? -1 : 1), w));
   }
   [[gnu::noinline]] static Terms general_sum(Terms x, Terms y, bool negative, T xf, T yf, T w) {
-    if (y.recording == 0) {
+    if (y.is_constant()) {
       x.shift();
       return x;
     }
-    if (x.recording == 0) {
+    if (x.is_constant()) {
       if (negative) return scaled(y, yf, T(-1));
       if (!(std::is_arithmetic_v<T> && w == yf)) y.shift();
       return y;
     }
     check(x, y);
     const Linear a = linear(x, xf), b = linear(y, yf);
-    return recorded(x.recording, records(x).push(a.place, a.weight, b.place, negative ? T(-b.weight) : b.weight, w));
+    return recorded(x.recording(), records(x).push(a.place, a.weight, b.place, negative ? T(-b.weight) : b.weight, w));
   }
 
   /// Adds +- y, of value yf, in place; w is the new value.
   DSNS_INLINE void accumulate(const Terms& y, bool negative, const T& yf, const T& w) {
-    if (y.state == State::term && !(negative && Term{y.operands}.is_weighted())) {
+    if (y.state() == Terms::term && !(negative && Term{y.operands}.is_weighted())) {
       const Term term{negative ? y.operands ^ Term::negative : y.operands};
-      if (t_.state != State::open || t_.recording != y.recording || !Tape<T>::is_active(y.recording) ||
-          !records(y).extend_run(std::uint32_t(t_.operands >> 32), term))
+      if (t_.tag != (y.tag | Terms::open) || !Tape<T>::is_active(y.tag - Terms::term) || !t_.run().extend(term)) [[unlikely]]
         t_ = opened(t_, y, term, f);
     } else {
       t_ = sum(t_, y, negative, f, yf, w);
@@ -292,9 +296,8 @@ struct Var {
   [[gnu::noinline]] static Terms opened(Terms x, Terms y, Term term, T xf) {
     check(x, y);
     auto& tape = records(y);
-    const std::uint32_t base = x.recording == 0 ? 0 : place_of(x, xf);
-    const std::uint32_t run = tape.open_run(base, term);
-    return {(std::uint64_t(run) << 32) | tape.run_place(run), y.recording, State::open};
+    const std::uint32_t base = x.is_constant() ? 0 : place_of(x, xf);
+    return {reinterpret_cast<std::uint64_t>(&tape.open_run(base, term)), y.recording() | Terms::open};
   }
 
   DSNS_INLINE void shift(const T& w) {
@@ -303,7 +306,7 @@ struct Var {
     t_.shift();
   }
   DSNS_INLINE void negate() {
-    if (t_.state == State::term && !Term{t_.operands}.is_weighted())
+    if (t_.state() == Terms::term && !Term{t_.operands}.is_weighted())
       t_.operands ^= Term::negative;
     else
       t_ = scaled(t_, f, T(-1));
@@ -316,15 +319,15 @@ struct Var {
   }
   /// c times terms t of value w.
   DSNS_INLINE static Terms scaled(const Terms& t, const T& w, const T& c) {
-    if (t.settled() && Tape<T>::is_active(t.recording)) [[likely]]
-      return {Term::of(records(t).push_weight(c), t.place(), Term::weighted).bits, t.recording, State::term};
+    if (exact_and_active(t)) [[likely]]
+      return {Term::of(records(t).push_weight(c), t.place(), Term::weighted).bits, t.tag | Terms::term};
     return general_scaled(t, w, c);
   }
   [[gnu::noinline]] static Terms general_scaled(Terms t, T w, T c) {
-    if (t.recording == 0) return t;
+    if (t.is_constant()) return t;
     auto& tape = records(t);
     const Linear l = linear(t, w);
-    return {Term::of(tape.push_weight(T(l.weight * c)), l.place, Term::weighted).bits, t.recording, State::term};
+    return {Term::of(tape.push_weight(T(l.weight * c)), l.place, Term::weighted).bits, t.recording() | Terms::term};
   }
 
   struct Linear {
@@ -334,19 +337,19 @@ struct Var {
   /// The terms t of value w as a weight times a recorded place.
   static Linear linear(const Terms& t, const T& w) {
     const Term term{t.operands};
-    if (t.state == State::term && term.is_weighted()) return {term.b(), records(t).weight(term.a())};
-    if (t.state == State::term && term.a() == term.b()) {
+    if (t.state() == Terms::term && term.is_weighted()) return {term.b(), records(t).weight(term.a())};
+    if (t.state() == Terms::term && term.a() == term.b()) {
       const T x = records(t).value(term.a());
       return {term.a(), term.is_negative() ? T(-(x + x)) : T(x + x)};
     }
     return {place_of(t, w), T(1)};
   }
   [[gnu::noinline]] static Terms general_product(Terms a, Terms b, T af, T bf) {
-    if (b.recording == 0) return general_scaled(a, af, bf);
-    if (a.recording == 0) return general_scaled(b, bf, af);
+    if (b.is_constant()) return general_scaled(a, af, bf);
+    if (a.is_constant()) return general_scaled(b, bf, af);
     check(a, b);
     const Linear x = linear(a, af), y = linear(b, bf);
-    return recorded(a.recording, records(a).push(x.place, T(x.weight * bf), y.place, T(y.weight * af), T(af * bf)));
+    return recorded(a.recording(), records(a).push(x.place, T(x.weight * bf), y.place, T(y.weight * af), T(af * bf)));
   }
 };
 
@@ -377,7 +380,7 @@ class Tape {
 
    private:
     Tape* previous_;
-    std::uint32_t previous_recording_;
+    std::uint64_t previous_recording_;
   };
 
   /// Forgets the last recording, keeps its memory, and becomes the active tape of this thread.
@@ -394,17 +397,18 @@ class Tape {
   /// throws   InvalidArgument for a result of another recording
   void backward(const Var<T>& result, const T& seed = T(1)) {
     result.settle();
-    if (result.t_.recording != 0) check(result);
+    if (!result.t_.is_constant()) check(result);
     records_.sweep(result.t_.place(), seed);
   }
   /// The derivative of the last sweep's result in x; 0 for a constant.
   /// throws   InvalidArgument for a variable of another recording, or recorded after the sweep
   T adjoint(const Var<T>& x) const {
-    if (x.t_.recording == 0) return T(0);
+    if (x.t_.is_constant()) return T(0);
     check(x);
-    if (x.t_.state == detail::VarState::term) return T(0);
-    require(x.t_.place() < records_.adjoint_count(), "Tape::adjoint: the variable is younger than the last backward sweep");
-    return records_.adjoint(x.t_.place());
+    if (x.t_.state() == detail::VarTerms::term) return T(0);
+    const std::uint32_t place = x.t_.settled() ? x.t_.place() : x.t_.run().place;
+    require(place < records_.adjoint_count(), "Tape::adjoint: the variable is younger than the last backward sweep");
+    return records_.adjoint(place);
   }
   /// Operations and variables recorded.
   std::size_t size() const { return records_.size() - 1; }
@@ -414,22 +418,23 @@ class Tape {
  private:
   friend struct Var<T>;
 
-  DSNS_INLINE static detail::TapeRecords<T>& active(std::uint32_t recording) {
+  DSNS_INLINE static detail::TapeRecords<T>& active(std::uint64_t recording) {
     if (!is_active(recording)) [[unlikely]]
       inactive();
     return active_->records_;
   }
-  DSNS_INLINE static bool is_active(std::uint32_t recording) { return recording == active_recording_; }
+  /// Also false for whatever is not in the state `exact`.
+  DSNS_INLINE static bool is_active(std::uint64_t recording) { return recording == active_recording_; }
   [[noreturn, gnu::cold]] static void inactive() {
     throw InvalidArgument("Var: its recording is not the active one of this thread; it has ended or was replaced");
   }
   void check(const Var<T>& x) const {
-    require(x.t_.recording == recording_, "Tape: the variable does not belong to this tape's last recording");
+    require(x.t_.recording() == recording_, "Tape: the variable does not belong to this tape's last recording");
   }
 
   static inline std::atomic<std::uint32_t> last_recording_{2};
   static inline constinit thread_local Tape* active_ = nullptr;
-  static inline constinit thread_local std::uint32_t active_recording_ = 1;  // that on it; 1 is nobody's, 0 that of constants
+  static inline constinit thread_local std::uint64_t active_recording_ = 1;  // that on it; 1 is nobody's, 0 that of constants
 
   detail::TapeRecords<T> records_;
   std::uint32_t recording_ = 0;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -34,10 +35,22 @@ struct Term {
 
 /// Terms with operands at equal distances, added to the sum at `place`. All operands precede the sum.
 struct Run {
-  Term first;
-  std::uint64_t next;    // the term that would continue it
-  std::uint64_t stride;  // from term to term, in the number's arithmetic; 0 while there is but one
-  std::uint32_t place, left;  // how many terms may follow before an operand would not precede the sum
+  static constexpr std::uint64_t no_term = ~std::uint64_t(0);
+
+  std::uint64_t next = no_term;   // the term that would continue it
+  std::uint64_t stride = 0;       // from term to term, in the number's arithmetic; 0 while there is but one
+  std::uint64_t limit = no_term;  // a term with an operand that does not precede the sum
+  Term first{};
+  std::uint32_t place = 0;
+
+  /// Whether the term continues the run; then it is part of it.
+  DSNS_INLINE bool extend(Term term) {
+    if (next == term.bits && term.bits != limit) [[likely]] {
+      next += stride;
+      return true;
+    }
+    return stride == 0 && second(term);
+  }
 
   std::ptrdiff_t stride_b() const { return std::int32_t(std::uint32_t(stride)); }
   std::ptrdiff_t stride_a() const { return std::int32_t(std::uint32_t((stride - std::uint64_t(stride_b())) >> 32)); }
@@ -45,6 +58,28 @@ struct Run {
     if (stride == 0) return 1;
     return static_cast<std::uint32_t>(stride_b() != 0 ? (std::int64_t(Term{next}.b()) - first.b()) / stride_b()
                                                       : (std::int64_t(Term{next}.a()) - first.a()) / stride_a());
+  }
+
+ private:
+  /// The second term tells the stride.
+  [[gnu::noinline]] bool second(Term term) {
+    constexpr std::uint64_t kind = Term::weighted | Term::negative;
+    if ((term.bits & kind) != (first.bits & kind)) return false;
+    const std::int64_t sa = std::int64_t(term.a()) - first.a(), sb = std::int64_t(term.b()) - first.b();
+    const std::int64_t a_left = term.is_weighted() ? unlimited : terms_left(term.a(), sa);
+    const std::int64_t left = std::min(a_left, terms_left(term.b(), sb));
+    if (left < 0 || (sa == 0 && sb == 0)) return false;
+    stride = (std::uint64_t(sa) << 32) + std::uint64_t(sb);
+    next = term.bits + stride;
+    limit = left == unlimited ? no_term : term.bits + (std::uint64_t(left) + 1) * stride;
+    return true;
+  }
+  static constexpr std::int64_t unlimited = std::numeric_limits<std::uint32_t>::max();
+  /// How many operands may follow p at this stride that lie between 1 and the sum; -1 where p itself does not.
+  std::int64_t terms_left(std::int64_t p, std::int64_t step) const {
+    if (p >= std::int64_t(place)) return -1;
+    if (step == 0) return unlimited;
+    return step > 0 ? (std::int64_t(place) - 1 - p) / step : (p - 1) / -step;
   }
 };
 
@@ -57,7 +92,7 @@ class TapeRecords {
   void clear() {
     size_ = 1;
     weight_count_ = 0;
-    runs_.clear();
+    run_count_ = 0;
     functions_.clear();
     if (nodes_.empty()) grow();
   }
@@ -76,29 +111,22 @@ class TapeRecords {
   }
 
   DSNS_INLINE Place push_weight(const T& w) {
-    if (weight_count_ == weights_.size()) [[unlikely]]
+    if (weight_count_ == weight_capacity_) [[unlikely]]
       grow_weights();
     weights_[weight_count_] = w;
     return weight_count_++;
   }
   const T& weight(Place k) const { return weights_[k]; }
 
-  /// A sum of base (0: none) and one term, which further terms may follow. The run's index.
-  Place open_run(Place base, Term term) {
+  /// A sum of base (0: none) and one term, which further terms may follow. It stays where it is until clear().
+  Run& open_run(Place base, Term term) {
     const Place p = push(base, T(1), 0, T(0), T(0));
-    runs_.push_back({term, 0, 0, p, 0});
-    return static_cast<Place>(runs_.size() - 1);
-  }
-  Place run_place(Place r) const { return runs_[r].place; }
-  /// Whether the term continues the run; then it is part of it.
-  DSNS_INLINE bool extend_run(Place r, Term term) {
-    Run& run = runs_[r];
-    if (run.next == term.bits && run.left != 0) [[likely]] {
-      run.next += run.stride;
-      --run.left;
-      return true;
-    }
-    return second_term(run, term);
+    if (run_count_ == chunks_.size() * chunk) chunks_.push_back(std::make_unique<Run[]>(chunk));
+    Run& r = run(run_count_++);
+    r = Run{};
+    r.first = term;
+    r.place = p;
+    return r;
   }
 
   /// Consecutive places for the results of a function that supplies its own pullback. Returns the first.
@@ -113,15 +141,15 @@ class TapeRecords {
   void sweep(Place last, const T& seed) {
     adjoints_.assign(size_, T(0));
     adjoints_[last] = seed;
-    std::size_t r = runs_.size(), f = functions_.size();
-    while (r > 0 && runs_[r - 1].place > last) --r;
+    std::size_t r = run_count_, f = functions_.size();
+    while (r > 0 && run(r - 1).place > last) --r;
     while (f > 0 && functions_[f - 1].place > last) --f;
     for (Place i = last; i > 0;) {
-      const Place run = r > 0 ? runs_[r - 1].place : 0, function = f > 0 ? functions_[f - 1].place : 0;
-      const Place stop = std::max(run, function);
+      const Place sum = r > 0 ? run(r - 1).place : 0, function = f > 0 ? functions_[f - 1].place : 0;
+      const Place stop = std::max(sum, function);
       back_nodes(i, stop);
       if (stop == 0) return;
-      if (stop == run) back(runs_[--r]);
+      if (stop == sum) back(run(--r));
       if (stop == function) back(functions_[--f]);
       back_nodes(stop, stop - 1);
       i = stop - 1;
@@ -129,10 +157,12 @@ class TapeRecords {
   }
 
   std::size_t bytes() const {
-    return size_ * (sizeof(Node) + 2 * sizeof(T)) + weight_count_ * sizeof(T) + runs_.size() * sizeof(Run);
+    return size_ * (sizeof(Node) + 2 * sizeof(T)) + weight_count_ * sizeof(T) + run_count_ * sizeof(Run);
   }
 
  private:
+  Run& run(std::size_t r) { return chunks_[r / chunk][r % chunk]; }
+
   struct Node {
     Place a, b;
     T da, db;
@@ -142,27 +172,6 @@ class TapeRecords {
     std::vector<Place> operands;
     Pullback pullback;
   };
-
-  [[gnu::noinline]] static bool second_term(Run& run, Term term) {
-    const Term first = run.first;
-    constexpr std::uint64_t kind = Term::weighted | Term::negative;
-    if (run.stride != 0 || (term.bits & kind) != (first.bits & kind)) return false;
-    const std::int64_t sa = std::int64_t(term.a()) - first.a(), sb = std::int64_t(term.b()) - first.b();
-    const std::int64_t a_left = term.is_weighted() ? unlimited : terms_before(run.place, term.a(), sa);
-    const std::int64_t b_left = terms_before(run.place, term.b(), sb);
-    if (a_left < 0 || b_left < 0 || (sa == 0 && sb == 0)) return false;
-    run.stride = (std::uint64_t(sa) << 32) + std::uint64_t(sb);
-    run.next = term.bits + run.stride;
-    run.left = static_cast<std::uint32_t>(std::min(a_left, b_left));
-    return true;
-  }
-  static constexpr std::int64_t unlimited = std::numeric_limits<std::uint32_t>::max();
-  /// How many operands may follow p at this stride that lie between 1 and place; -1 where p itself does not.
-  static std::int64_t terms_before(std::int64_t place, std::int64_t p, std::int64_t stride) {
-    if (p >= place) return -1;
-    if (stride == 0) return unlimited;
-    return stride > 0 ? (place - 1 - p) / stride : (p - 1) / -stride;
-  }
 
   /// Nodes last, last - 1, ... down to `stop`, without it.
   void back_nodes(Place last, Place stop) {
@@ -217,15 +226,18 @@ class TapeRecords {
     if (weights_.size() > std::size_t(std::numeric_limits<Place>::max() / 4))
       throw InvalidArgument("Tape: more than 2^30 constant factors in one recording");
     weights_.resize(std::max<std::size_t>(256, 2 * weights_.size()));
+    weight_capacity_ = static_cast<Place>(weights_.size());
   }
 
   std::vector<Node> nodes_;  // and values_: capacity_ of them, size_ in use
   std::vector<T> values_;
   Place size_ = 1, capacity_ = 0;
   std::vector<T> weights_;  // weight_count_ in use
-  Place weight_count_ = 0;
+  Place weight_count_ = 0, weight_capacity_ = 0;
   std::vector<T> adjoints_;
-  std::vector<Run> runs_;  // by place
+  static constexpr std::size_t chunk = 512;
+  std::vector<std::unique_ptr<Run[]>> chunks_;  // of runs, by place; run_count_ in use
+  std::size_t run_count_ = 0;
   std::vector<Function> functions_;
 };
 
