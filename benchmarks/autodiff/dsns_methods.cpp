@@ -3,6 +3,8 @@
 
 #include <dsns/autodiff/batch.hpp>
 #include <dsns/autodiff/dual.hpp>
+#include <dsns/autodiff/element_sum.hpp>
+#include <dsns/autodiff/functions_on_tape.hpp>
 #include <dsns/autodiff/jet2.hpp>
 #include <dsns/autodiff/matrix.hpp>
 #include <dsns/autodiff/matrix_jets.hpp>
@@ -100,6 +102,15 @@ Method reverse() {
   m.arrow = taped([](const std::vector<V>& x) { return workloads::arrow(x); });
   m.log_cosh = taped([](const std::vector<V>& x) { return workloads::log_cosh(x, data().rows); });
   m.network = taped([](const std::vector<V>& p) { return workloads::network_loss(p, data().samples); });
+  m.network_tape_bytes = [] {
+    Tape<double> tape;
+    const auto recording = tape.record();
+    std::vector<V> p;
+    for (const double& x : data().parameters) p.push_back(tape.variable(x));
+    const V loss = workloads::network_loss(p, data().samples);
+    tape.backward(loss);
+    return tape.bytes();
+  };
   m.curvature = taped([](const std::vector<V>& p) {
     using J = Jet2<V, 2>;
     const auto input = [](const auto& s, const auto& e1, const auto& e2) {
@@ -110,6 +121,45 @@ Method reverse() {
     const auto second = [](const auto& y, std::size_t k) { return k < 2 ? y.g[k] : y.h[k - 2]; };
     return workloads::curvature_loss<J>(p, data().charts, input, second);
   });
+  return m;
+}
+
+Method local() {
+  using V = Var<double>;
+  Method m{"dsns local preaccumulation"};
+  m.rosenbrock = taped([](const std::vector<V>& x) {
+    V sum = 0.0;
+    for (std::size_t i = 0; i + 1 < x.size(); ++i)
+      sum += preaccumulate(
+          [](const auto& now, const auto& next) {
+            const auto a = next - now * now, b = 1.0 - now;
+            return 100.0 * a * a + b * b;
+          },
+          x[i], x[i + 1]);
+    return sum;
+  });
+  return m;
+}
+
+Method by_element() {
+  Method m{"dsns ElementSum"};
+  m.sparse_hessian = [](const std::vector<double>& x, std::vector<double>& g, std::vector<double>& h) {
+    static const ElementSum<2> sum = [&] {
+      std::vector<ElementSum<2>::Element> pairs;
+      for (int i = 0; i + 1 < int(x.size()); ++i) pairs.push_back({i, i + 1});
+      return ElementSum<2>(Eigen::Index(x.size()), pairs);
+    }();
+    const auto element = [](const auto& v) {
+      const auto a = v[1] - v[0] * v[0], b = 1.0 - v[0];
+      return 100.0 * a * a + b * b;
+    };
+    const Eigen::VectorXd at = Eigen::Map<const Eigen::VectorXd>(x.data(), Eigen::Index(x.size()));
+    static SecondOrderSum<double> r = sum.second_order(element, at);
+    sum.second_order(element, at, r);
+    std::copy(r.gradient.begin(), r.gradient.end(), g.begin());
+    std::copy(r.hessian.valuePtr(), r.hessian.valuePtr() + r.hessian.nonZeros(), h.begin());
+    return r.value;
+  };
   return m;
 }
 
@@ -216,4 +266,4 @@ Method matrix_nodes() {
 
 }  // namespace
 
-std::vector<Method> dsns_methods() { return {forward(), batched(), reverse(), matrix_nodes()}; }
+std::vector<Method> dsns_methods() { return {forward(), batched(), reverse(), local(), by_element(), matrix_nodes()}; }

@@ -285,14 +285,21 @@ double curvature_loss(const std::vector<double>& p, const Charts& charts, std::v
   return loss / double(n);
 }
 
-void rosenbrock_hessian(const std::vector<double>& x, std::vector<double>& diagonal, std::vector<double>& beside) {
+double rosenbrock_hessian(const std::vector<double>& x, std::vector<double>& g, std::vector<double>& h) {
   const std::size_t n = x.size();
-  diagonal[0] = 1200 * x[0] * x[0] - 400 * x[1] + 2;
+  const double value = rosenbrock(x, g);
+  h[0] = 1200 * x[0] * x[0] - 400 * x[1] + 2;
+  h[1] = -400 * x[0];
 #pragma GCC ivdep
-  for (std::size_t i = 1; i + 1 < n; ++i) diagonal[i] = 1200 * x[i] * x[i] - 400 * x[i + 1] + 202;
-  diagonal[n - 1] = 200;
-#pragma GCC ivdep
-  for (std::size_t i = 0; i + 1 < n; ++i) beside[i] = -400 * x[i];
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    double* const column = &h[3 * i - 1];
+    column[0] = -400 * x[i - 1];
+    column[1] = 1200 * x[i] * x[i] - 400 * x[i + 1] + 202;
+    column[2] = -400 * x[i];
+  }
+  h[3 * n - 4] = -400 * x[n - 2];
+  h[3 * n - 3] = 200;
+  return value;
 }
 
 }  // namespace hand

@@ -16,7 +16,7 @@ double log_cosh(const std::vector<double>& x, const Rows& a, std::vector<double>
 double network_loss(const std::vector<double>& p, const Samples& samples, std::vector<double>& g);
 double curvature_loss(const std::vector<double>& p, const Charts& charts, std::vector<double>& g);
 
-/// Rosenbrock's Hessian: diagonal and the entries beside it.
-void rosenbrock_hessian(const std::vector<double>& x, std::vector<double>& diagonal, std::vector<double>& beside);
+/// Rosenbrock's value, gradient and the 3 n - 2 entries of its tridiagonal Hessian, column by column.
+double rosenbrock_hessian(const std::vector<double>& x, std::vector<double>& g, std::vector<double>& h);
 
 }  // namespace hand

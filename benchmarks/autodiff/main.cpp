@@ -129,8 +129,21 @@ void gradient(Results& results, const char* workload, const Method& method, cons
          std::max(worst(g.data(), expected.data(), g.size()), worst(&value, &expected_value, 1)));
 }
 
+void sparse_hessian(Results& results, const Method& method) {
+  if (!method.sparse_hessian) return;
+  const std::vector<double>& x = data().x;
+  std::vector<double> g(x.size()), h(3 * x.size() - 2), expected_g(g), expected_h(h);
+  double value = 0, expected = 0;
+  const Timing t = side_by_side([&] { value = method.sparse_hessian(x, g, h); },
+                                [&] { expected = hand::rosenbrock_hessian(x, expected_g, expected_h); });
+  report(results, "RH", method, t,
+         std::max({worst(&value, &expected, 1), worst(g.data(), expected_g.data(), g.size()),
+                   worst(h.data(), expected_h.data(), h.size())}));
+}
+
 Method by_hand() {
   Method m{"by hand"};
+  m.sparse_hessian = hand::rosenbrock_hessian;
   m.first_order = [](const workloads::SurfacePoints& p, std::vector<workloads::FirstOrder>& out) {
     for (std::size_t i = 0; i < p.size(); ++i) out[i] = hand::first_order(p.u[i], p.v[i], p.t[i]);
   };
@@ -177,6 +190,7 @@ int main(int argc, char** argv) {
     pointwise<workloads::FirstOrder>(results, "J3", m, m.first_order, hand::first_order);
   for (const Method& m : methods)
     pointwise<workloads::SecondOrder>(results, "H2", m, m.second_order, hand::second_order);
+  for (const Method& m : methods) sparse_hessian(results, m);
   for (const Method& m : methods) gradient(results, "R", m, m.rosenbrock, d.x, h.rosenbrock);
   for (const Method& m : methods) gradient(results, "A", m, m.arrow, d.x, h.arrow);
   for (const Method& m : methods) gradient(results, "L", m, m.log_cosh, d.x, h.log_cosh);

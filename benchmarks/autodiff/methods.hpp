@@ -22,6 +22,7 @@ struct Method {
   std::function<void(const workloads::SurfacePoints&, std::vector<workloads::FirstOrder>&)> first_order{};
   std::function<void(const workloads::SurfacePoints&, std::vector<workloads::SecondOrder>&)> second_order{};
   Gradient rosenbrock{}, arrow{}, log_cosh{}, network{}, curvature{};
+  std::function<double(const std::vector<double>& x, std::vector<double>& g, std::vector<double>& h)> sparse_hessian{};
   std::function<std::size_t()> network_tape_bytes{};  // of one recording of the network's loss
 };
 

@@ -11,19 +11,20 @@ namespace workloads {
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// A stretched sphere with a harmonic bump and a wave that comes and goes. U is the scalar of the angles, T that of time.
-template <class U, class T>
-auto moving_surface(const U& u, const U& v, const T& t) {
+/// A stretched sphere with a harmonic bump and a wave that comes and goes. U is the scalar of the angles, T that of time,
+/// C a constant that U's arithmetic takes.
+template <class C = double, class U, class T>
+std::array<U, 3> moving_surface(const U& u, const U& v, const T& t) {
   using std::cos, std::exp, std::sin;
   const U sin_u = sin(u);
   const U x = sin_u * cos(v), y = sin_u * sin(v), z = cos(u);
-  const U dx = x - 0.6, dy = y - 0.5, dz = z - 0.4;
-  const U bump = exp(-4.0 * (dx * dx + dy * dy + dz * dz));
+  const U dx = x - C(0.6), dy = y - C(0.5), dz = z - C(0.4);
+  const U bump = exp(C(-4.0) * (dx * dx + dy * dy + dz * dz));
   const U harmonic = (x * x - y * y) * z;
   const T a = 1.0 + 0.3 * t, b = 1.0 - 0.2 * t * t, c = 1.0 / (a * b);
-  const auto radius = 1.0 + (0.2 * t) * harmonic + (0.1 * sin(2 * pi * t)) * bump;
-  using R = std::decay_t<decltype(radius * x)>;
-  return std::array<R, 3>{a * (radius * x), b * (radius * y), c * (radius * z)};
+  const T kt = 0.2 * t, ks = 0.1 * sin(2 * pi * t);
+  const U radius = C(1.0) + kt * harmonic + ks * bump;
+  return {U(a * (radius * x)), U(b * (radius * y)), U(c * (radius * z))};
 }
 
 struct SurfacePoints {

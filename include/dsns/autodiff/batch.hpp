@@ -119,7 +119,7 @@ extern "C" {
 [[gnu::const]] Vector4d _ZGVdN4v_log(Vector4d);
 }
 inline constexpr bool has_vector_functions = true;
-#define DSNS_VECTOR_FUNCTION(name) [](detail::Vector4d x) { return detail::_ZGVdN4v_##name(x); }
+#define DSNS_VECTOR_FUNCTION(name) [](detail::Vector4d four) { return detail::_ZGVdN4v_##name(four); }
 #else
 inline constexpr bool has_vector_functions = false;
 #define DSNS_VECTOR_FUNCTION(name) 0

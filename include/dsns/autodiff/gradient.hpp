@@ -9,6 +9,7 @@
 /// what it returns is evaluated while its arguments live, so lambdas may return `auto`.
 #include <dsns/autodiff/dual.hpp>
 #include <dsns/autodiff/eigen.hpp>
+#include <dsns/autodiff/jet2.hpp>
 #include <dsns/autodiff/tape.hpp>
 
 #include <cstddef>
@@ -196,6 +197,75 @@ auto hessian(const F& f, const Wrt<W...>& wrt, const At<A...>& at) {
     for (Eigen::Index i = 0; i < n; ++i) H(i, j) = tape.adjoint(variables[std::size_t(i)]).g[0];
   }
   return H;
+}
+
+template <class T>
+struct ValueAndDerivative {
+  T value;
+  T derivative;
+};
+
+/// The derivative along one direction, by one forward pass: the product of the Jacobian and `direction`.
+/// direction  one number for each entry of wrt
+/// returns    {f, J direction}, shaped as the result of f is
+/// throws     InvalidArgument for a direction of another size
+template <class F, class... W, class... A, class Direction>
+auto jvp(const F& f, const Wrt<W...>& wrt, const At<A...>& at, const Eigen::MatrixBase<Direction>& direction) {
+  using T = detail::scalar_of<W...>;
+  using D = Dual<T, 1>;
+  require(direction.size() == detail::entries(wrt), "jvp: a direction of ", direction.size(), " entries for ",
+          detail::entries(wrt), " variables");
+  const auto y = detail::call_lifted<D>(f, wrt, at, [&](const T& x, Eigen::Index k) { return D(x, {direction(k)}); });
+  if constexpr (requires { y.rows(); }) {
+    using M = Eigen::MatrixX<T>;
+    return ValueAndDerivative<M>{M(y.unaryExpr([](const D& d) { return d.f; })),
+                                 M(y.unaryExpr([](const D& d) { return T(d.g[0]); }))};
+  } else {
+    return ValueAndDerivative<T>{y.f, T(y.g[0])};
+  }
+}
+
+/// The gradient of a weighted sum of results, by one backward sweep: the product of `weights` and the Jacobian.
+/// weights  one number for each entry of the result
+/// returns  one number for each entry of wrt
+/// throws   InvalidArgument for weights of another size
+template <class F, class... W, class... A, class Weights>
+auto vjp(const F& f, const Wrt<W...>& wrt, const At<A...>& at, const Eigen::MatrixBase<Weights>& weights) {
+  return gradient(
+      [&](const auto&... x) {
+        const auto y = detail::evaluated(f(x...));
+        require(y.size() == weights.size(), "vjp: ", weights.size(), " weights for a result of ", y.size(), " entries");
+        auto sum = y(0) * weights(0);
+        for (Eigen::Index k = 1; k < y.size(); ++k) sum += y.reshaped()(k) * weights(k);
+        return sum;
+      },
+      wrt, at);
+}
+
+/// The Hessian of a scalar function times a direction, forward over reverse: the cost of a few gradients.
+/// throws   InvalidArgument for a direction of another size
+template <class F, class... W, class... A, class Direction>
+auto hvp(const F& f, const Wrt<W...>& wrt, const At<A...>& at, const Eigen::MatrixBase<Direction>& direction) {
+  using T = detail::scalar_of<W...>;
+  using D = Dual<T, 1>;
+  require(direction.size() == detail::entries(wrt), "hvp: a direction of ", direction.size(), " entries for ",
+          detail::entries(wrt), " variables");
+  Tape<D> tape;
+  const auto recording = tape.record();
+  std::vector<Var<D>> variables;
+  const Var<D> y = detail::call_lifted<Var<D>>(f, wrt, at, [&](const D& x, Eigen::Index k) {
+    return variables.emplace_back(tape.variable(D(x.f, {direction(k)})));
+  });
+  tape.backward(y);
+  Eigen::VectorX<T> product{Eigen::Index(variables.size())};
+  for (std::size_t k = 0; k < variables.size(); ++k) product[Eigen::Index(k)] = tape.adjoint(variables[k]).g[0];
+  return product;
+}
+
+/// The 2-jet of a function of two numbers: value, gradient and Hessian, by one forward pass.
+template <class F, class T>
+auto jet2(const F& f, const T& u, const T& v) {
+  return f(Jet2<T, 2>::variable(u, 0), Jet2<T, 2>::variable(v, 1));
 }
 
 }  // namespace dsns

@@ -63,7 +63,7 @@ typename MatrixTape<T>::Node jet_layer(MatrixTape<T>& tape, typename MatrixTape<
   auto& z = o.kept[0];
   z.noalias() = vw * vx;
   z.leftCols(m).colwise() += vb.col(0);
-  for (int k = 1; k < 4; ++k) o.kept[k].resize(n, m);
+  for (std::size_t k = 1; k < 4; ++k) o.kept[k].resize(n, m);
   o.value.leftCols(m) = z.leftCols(m);
   function(o.value.leftCols(m).array(), o.kept[1].array(), o.kept[2].array(), o.kept[3].array());
   const auto slope = o.kept[1].array(), second = o.kept[2].array();

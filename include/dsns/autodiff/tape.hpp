@@ -17,9 +17,12 @@
 
 #include <atomic>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <functional>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace dsns {
 
@@ -34,7 +37,7 @@ struct VarTerms {
   static constexpr std::uint64_t exact = 0;                        // a constant, or recorded with this value
   static constexpr std::uint64_t shifted = std::uint64_t(1) << 32;  // recorded but for a constant added since
   static constexpr std::uint64_t term = std::uint64_t(2) << 32;     // not recorded: a Term
-  static constexpr std::uint64_t open = std::uint64_t(3) << 32;     // recorded but for the value: terms may be added to a Run
+  static constexpr std::uint64_t open = std::uint64_t(3) << 32;     // not recorded: a Run, to which terms may be added
 
   std::uint64_t operands = 0;  // the place, the Term or the address of the Run
   std::uint64_t tag = 0;       // 0 is a constant
@@ -101,6 +104,8 @@ struct Var {
   /// w(x, y) for a function with value w and partial derivatives wx, wy.
   template <class Second>
   DSNS_INLINE friend Var chain(const Var& x, const Var& y, const T& w, const T& wx, const T& wy, const Second&) {
+    if (exact_and_active(x.t_) && exact_and_active(y.t_)) [[likely]]
+      return Var(w, recorded(x.t_.tag, records(x.t_).push(x.t_.place(), wx, y.t_.place(), wy, w)));
     x.settle();
     y.settle();
     return Var(w, push(x.t_, wx, y.t_, wy, w));
@@ -231,21 +236,13 @@ struct Var {
   [[gnu::noinline]] static std::uint32_t place_of(Terms t, T w) {
     if (t.settled()) return t.place();
     auto& tape = records(t);
-    if (t.state() == Terms::open) {
-      const std::uint32_t p = t.run().place;
-      tape.value(p) = w;
-      return p;
-    }
-    const Term term{t.operands};
-    if (term.is_weighted()) return tape.push(term.b(), T(tape.weight(term.a())), 0, T(0), w);
-    const T sign = T(term.is_negative() ? -1 : 1);
-    return tape.push(term.a(), T(sign * tape.value(term.b())), term.b(), T(sign * tape.value(term.a())), w);
+    return t.state() == Terms::open ? tape.close_run(t.run(), w) : tape.push_term(0, Term{t.operands}, w);
   }
 
   /// A result w with derivative d in the settled x, or with wx and wy in x and y; they may be constants.
   [[gnu::noinline]] static Terms push(Terms x, T d, T w) {
     if (x.is_constant()) return x;
-    return recorded(x.recording(), records(x).push(x.place(), d, 0, T(0), w));
+    return recorded(x.recording(), records(x).push(x.place(), d, w));
   }
   [[gnu::noinline]] static Terms push(Terms x, T wx, Terms y, T wy, T w) {
     if (x.is_constant() && y.is_constant()) return x;
@@ -287,6 +284,9 @@ struct Var {
       const Term term{negative ? y.operands ^ Term::negative : y.operands};
       if (t_.tag != (y.tag | Terms::open) || !Tape<T>::is_active(y.tag - Terms::term) || !t_.run().extend(term)) [[unlikely]]
         t_ = opened(t_, y, term, f);
+    } else if (!negative && !t_.is_constant() && exact_and_active(y)) {
+      const Term term = Term::of(0, y.place(), Term::weighted);  // by the tape's constant 0, which is 1
+      if (t_.tag != (y.tag | Terms::open) || !t_.run().extend(term)) t_ = opened(t_, y, term, f);
     } else {
       t_ = sum(t_, y, negative, f, yf, w);
     }
@@ -391,7 +391,7 @@ class Tape {
     return Recording(*this);
   }
   /// An independent variable of this recording.
-  Var<T> variable(const T& w) { return Var<T>(w, Var<T>::recorded(recording_, records_.push(0, T(0), 0, T(0), w))); }
+  Var<T> variable(const T& w) { return Var<T>(w, Var<T>::recorded(recording_, records_.push_variable(w))); }
 
   /// Derivatives of `seed * result` in everything recorded before it; replaces the adjoints of an earlier sweep.
   /// throws   InvalidArgument for a result of another recording
@@ -405,13 +405,38 @@ class Tape {
   T adjoint(const Var<T>& x) const {
     if (x.t_.is_constant()) return T(0);
     check(x);
-    if (x.t_.state() == detail::VarTerms::term) return T(0);
-    const std::uint32_t place = x.t_.settled() ? x.t_.place() : x.t_.run().place;
-    require(place < records_.adjoint_count(), "Tape::adjoint: the variable is younger than the last backward sweep");
+    if (!x.t_.settled()) return T(0);  // nothing was made of it
+    const std::uint32_t place = x.t_.place();
+    if (place >= records_.adjoint_count()) [[unlikely]]
+      throw InvalidArgument("Tape::adjoint: the variable is younger than the last backward sweep");
     return records_.adjoint(place);
   }
+  /// What a function's pullback gets and gives: the derivatives of the sweep's result in the function's results; to
+  /// `operands` it adds those in its operands.
+  using Pullback = std::function<void(std::span<const T> results, std::span<T> operands)>;
+  /// The results of a function that brings its own derivative, on the active tape; constants if all operands are. The
+  /// pullback lives as long as the recording.
+  static std::vector<Var<T>> function(std::span<const Var<T>> operands, std::span<const T> results, Pullback pullback) {
+    std::vector<std::uint32_t> places;
+    std::uint64_t recording = 0;
+    for (const Var<T>& x : operands) {
+      x.settle();
+      if (!x.t_.is_constant()) {
+        require(recording == 0 || recording == x.t_.recording(), "Tape::function: operands of different recordings");
+        recording = x.t_.recording();
+      }
+      places.push_back(x.t_.place());
+    }
+    if (recording == 0) return {results.begin(), results.end()};
+    const std::uint32_t first = active(recording).push_function(std::move(places), results, std::move(pullback));
+    std::vector<Var<T>> out;
+    out.reserve(results.size());
+    for (std::size_t k = 0; k < results.size(); ++k)
+      out.push_back(Var<T>(results[k], Var<T>::recorded(recording, first + static_cast<std::uint32_t>(k))));
+    return out;
+  }
   /// Operations and variables recorded.
-  std::size_t size() const { return records_.size() - 1; }
+  std::size_t size() const { return records_.size(); }
   /// Memory in use by this recording and its adjoints.
   std::size_t bytes() const { return records_.bytes(); }
 
@@ -429,7 +454,8 @@ class Tape {
     throw InvalidArgument("Var: its recording is not the active one of this thread; it has ended or was replaced");
   }
   void check(const Var<T>& x) const {
-    require(x.t_.recording() == recording_, "Tape: the variable does not belong to this tape's last recording");
+    if (x.t_.recording() != recording_) [[unlikely]]
+      throw InvalidArgument("Tape: the variable does not belong to this tape's last recording");
   }
 
   static inline std::atomic<std::uint32_t> last_recording_{2};

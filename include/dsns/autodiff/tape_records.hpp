@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -33,19 +32,18 @@ struct Term {
   bool is_negative() const { return (bits & negative) != 0; }
 };
 
-/// Terms with operands at equal distances, added to the sum at `place`. All operands precede the sum.
+/// Terms with operands at equal distances, to be added to the place `base`, if there is one.
 struct Run {
-  static constexpr std::uint64_t no_term = ~std::uint64_t(0);
+  std::uint64_t next;    // the term that would continue it
+  std::uint64_t stride;  // from term to term, in the number's arithmetic; 0 while there is but one
+  Term first;
+  std::uint32_t base, place;  // 0: none; not recorded yet
 
-  std::uint64_t next = no_term;   // the term that would continue it
-  std::uint64_t stride = 0;       // from term to term, in the number's arithmetic; 0 while there is but one
-  std::uint64_t limit = no_term;  // a term with an operand that does not precede the sum
-  Term first{};
-  std::uint32_t place = 0;
+  static constexpr std::uint64_t none = ~std::uint64_t(0);
 
   /// Whether the term continues the run; then it is part of it.
   DSNS_INLINE bool extend(Term term) {
-    if (next == term.bits && term.bits != limit) [[likely]] {
+    if (next == term.bits) [[likely]] {
       next += stride;
       return true;
     }
@@ -61,25 +59,15 @@ struct Run {
   }
 
  private:
+  static constexpr std::uint64_t kind = Term::weighted | Term::negative;
+
   /// The second term tells the stride.
   [[gnu::noinline]] bool second(Term term) {
-    constexpr std::uint64_t kind = Term::weighted | Term::negative;
-    if ((term.bits & kind) != (first.bits & kind)) return false;
     const std::int64_t sa = std::int64_t(term.a()) - first.a(), sb = std::int64_t(term.b()) - first.b();
-    const std::int64_t a_left = term.is_weighted() ? unlimited : terms_left(term.a(), sa);
-    const std::int64_t left = std::min(a_left, terms_left(term.b(), sb));
-    if (left < 0 || (sa == 0 && sb == 0)) return false;
+    if (((term.bits ^ first.bits) & kind) != 0 || (sa == 0 && sb == 0)) return false;
     stride = (std::uint64_t(sa) << 32) + std::uint64_t(sb);
     next = term.bits + stride;
-    limit = left == unlimited ? no_term : term.bits + (std::uint64_t(left) + 1) * stride;
     return true;
-  }
-  static constexpr std::int64_t unlimited = std::numeric_limits<std::uint32_t>::max();
-  /// How many operands may follow p at this stride that lie between 1 and the sum; -1 where p itself does not.
-  std::int64_t terms_left(std::int64_t p, std::int64_t step) const {
-    if (p >= std::int64_t(place)) return -1;
-    if (step == 0) return unlimited;
-    return step > 0 ? (std::int64_t(place) - 1 - p) / step : (p - 1) / -step;
   }
 };
 
@@ -90,18 +78,31 @@ class TapeRecords {
   using Pullback = std::function<void(std::span<const T> results, std::span<T> operands)>;
 
   void clear() {
-    size_ = 1;
+    size_ = nowhere;
+    variables_ = nowhere;
     weight_count_ = 0;
+    push_weight(T(1));  // of the terms that are no product
     run_count_ = 0;
+    runs_.clear();
     functions_.clear();
     if (nodes_.empty()) grow();
   }
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return size_ - nowhere; }
   T& value(Place p) { return values_[p]; }
   const T& adjoint(Place p) const { return adjoints_[p]; }
   std::size_t adjoint_count() const { return adjoints_.size(); }
 
-  /// A result w with derivative da in place a and db in place b; place 0 takes what nobody asks for.
+  Place push_variable(const T& w) {
+    if (variables_ != size_) return push(w);
+    if (size_ == capacity_) [[unlikely]]
+      grow();
+    values_[size_] = w;  // the sweep stops before: no node
+    ++variables_;
+    return size_++;
+  }
+  /// A result w with derivative da in place a, and db in place b.
+  DSNS_INLINE Place push(const T& w) { return push(size_ % nowhere, T(0), size_ % nowhere, T(0), w); }
+  DSNS_INLINE Place push(Place a, const T& da, const T& w) { return push(a, da, size_ % nowhere, T(0), w); }
   DSNS_INLINE Place push(Place a, const T& da, Place b, const T& db, const T& w) {
     if (size_ == capacity_) [[unlikely]]
       grow();
@@ -118,21 +119,34 @@ class TapeRecords {
   }
   const T& weight(Place k) const { return weights_[k]; }
 
-  /// A sum of base (0: none) and one term, which further terms may follow. It stays where it is until clear().
+  /// The beginning of a sum of base (0: none) and terms. It stays where it is until clear().
   Run& open_run(Place base, Term term) {
-    const Place p = push(base, T(1), 0, T(0), T(0));
     if (run_count_ == chunks_.size() * chunk) chunks_.push_back(std::make_unique<Run[]>(chunk));
-    Run& r = run(run_count_++);
-    r = Run{};
-    r.first = term;
-    r.place = p;
+    Run& r = chunks_[run_count_ / chunk][run_count_ % chunk];
+    ++run_count_;
+    r = Run{Run::none, 0, term, base, 0};
     return r;
+  }
+  /// Records the sum, with value w.
+  Place close_run(Run& r, const T& w) {
+    if (r.stride == 0) return push_term(r.base, r.first, w);
+    const Place p = push(r.base, T(1), w);
+    r.place = p;
+    runs_.push_back(&r);
+    return p;
+  }
+  /// base (0: none) plus a term.
+  Place push_term(Place base, Term term, const T& w) {
+    if (term.is_weighted()) return push(base, T(1), term.b(), weights_[term.a()], w);
+    const T sign = T(term.is_negative() ? -1 : 1);
+    const Place p = push(term.a(), T(sign * values_[term.b()]), term.b(), T(sign * values_[term.a()]), w);
+    return base == 0 ? p : push(base, T(1), p, T(1), w);
   }
 
   /// Consecutive places for the results of a function that supplies its own pullback. Returns the first.
   Place push_function(std::vector<Place> operands, std::span<const T> results, Pullback pullback) {
     const Place first = size_;
-    for (const T& w : results) push(0, T(0), 0, T(0), w);
+    for (const T& w : results) push(w);
     functions_.push_back({first, static_cast<Place>(results.size()), std::move(operands), std::move(pullback)});
     return first;
   }
@@ -141,15 +155,15 @@ class TapeRecords {
   void sweep(Place last, const T& seed) {
     adjoints_.assign(size_, T(0));
     adjoints_[last] = seed;
-    std::size_t r = run_count_, f = functions_.size();
-    while (r > 0 && run(r - 1).place > last) --r;
+    std::size_t r = runs_.size(), f = functions_.size();
+    while (r > 0 && runs_[r - 1]->place > last) --r;
     while (f > 0 && functions_[f - 1].place > last) --f;
-    for (Place i = last; i > 0;) {
-      const Place sum = r > 0 ? run(r - 1).place : 0, function = f > 0 ? functions_[f - 1].place : 0;
-      const Place stop = std::max(sum, function);
+    for (Place i = last; i >= variables_;) {
+      const Place sum = r > 0 ? runs_[r - 1]->place : 0, function = f > 0 ? functions_[f - 1].place : 0;
+      const Place stop = std::max({sum, function, Place(variables_ - 1)});
       back_nodes(i, stop);
-      if (stop == 0) return;
-      if (stop == sum) back(run(--r));
+      if (stop < variables_) return;
+      if (stop == sum) back(*runs_[--r]);
       if (stop == function) back(functions_[--f]);
       back_nodes(stop, stop - 1);
       i = stop - 1;
@@ -157,11 +171,13 @@ class TapeRecords {
   }
 
   std::size_t bytes() const {
-    return size_ * (sizeof(Node) + 2 * sizeof(T)) + weight_count_ * sizeof(T) + run_count_ * sizeof(Run);
+    return size_ * (sizeof(Node) + 2 * sizeof(T)) + weight_count_ * sizeof(T) + run_count_ * sizeof(Run) + runs_.size() * sizeof(Run*);
   }
 
  private:
-  Run& run(std::size_t r) { return chunks_[r / chunk][r % chunk]; }
+  /// The first places take what nobody asks for, in turn, so that additions to them do not wait for one another. A constant
+  /// is at place 0.
+  static constexpr Place nowhere = 8;
 
   struct Node {
     Place a, b;
@@ -216,28 +232,29 @@ class TapeRecords {
 
   [[gnu::noinline]] void grow() {
     const std::size_t capacity = nodes_.empty() ? 256 : 2 * nodes_.size();
-    if (capacity > std::size_t(std::numeric_limits<Place>::max()))
-      throw InvalidArgument("Tape: more than 2^31 operations in one recording");
+    if (capacity > most) throw InvalidArgument("Tape: more than 2^30 operations in one recording");
     nodes_.resize(capacity);
     values_.resize(capacity);
     capacity_ = static_cast<Place>(capacity);
   }
   [[gnu::noinline]] void grow_weights() {
-    if (weights_.size() > std::size_t(std::numeric_limits<Place>::max() / 4))
-      throw InvalidArgument("Tape: more than 2^30 constant factors in one recording");
+    if (2 * weights_.size() > most) throw InvalidArgument("Tape: more than 2^30 constant factors in one recording");
     weights_.resize(std::max<std::size_t>(256, 2 * weights_.size()));
     weight_capacity_ = static_cast<Place>(weights_.size());
   }
 
   std::vector<Node> nodes_;  // and values_: capacity_ of them, size_ in use
   std::vector<T> values_;
-  Place size_ = 1, capacity_ = 0;
+  Place size_ = nowhere, capacity_ = 0;
+  Place variables_ = nowhere;  // the places before this are independent variables
   std::vector<T> weights_;  // weight_count_ in use
   Place weight_count_ = 0, weight_capacity_ = 0;
   std::vector<T> adjoints_;
+  static constexpr std::size_t most = std::size_t(1) << 30;  // so that no place plus a stride is another kind of Term
   static constexpr std::size_t chunk = 512;
-  std::vector<std::unique_ptr<Run[]>> chunks_;  // of runs, by place; run_count_ in use
+  std::vector<std::unique_ptr<Run[]>> chunks_;  // of runs, run_count_ in use
   std::size_t run_count_ = 0;
+  std::vector<const Run*> runs_;  // those recorded, by place
   std::vector<Function> functions_;
 };
 
