@@ -215,5 +215,13 @@ template <class T, int L>
 Batch<T, L> softplus(const Batch<T, L>& x) {
   return select(x > 0, x, Batch<T, L>(0)) + log1p(exp(-abs(x)));
 }
+template <class T, int L>
+Batch<T, L> silu(const Batch<T, L>& x) {
+  return x * sigmoid(x);
+}
+template <class T, int L>
+Batch<T, L> sqr(const Batch<T, L>& x) {
+  return x * x;
+}
 
 }  // namespace dsns

@@ -32,62 +32,64 @@ T power(const T& x, const P& p) {
 /// p x^(p - 1), which is 0 for p = 0 also at x = 0.
 template <class T, class P>
 T power_derivative(const T& x, const P& p) {
-  return value(x) == 0 && value(p) == 0 ? T(0) : T(p * power(x, P(p - 1)));
+  return select(value(x) == 0 && value(p) == 0, T(0), T(p * power(x, P(p - 1))));
 }
 
 /// p (p - 1) x^(p - 2), which is 0 for p = 0 and p = 1 also at x = 0.
 template <class T, class P>
 T power_second(const T& x, const P& p) {
-  return value(x) == 0 && (value(p) == 0 || value(p) == 1) ? T(0) : T(p * (p - 1) * power(x, P(p - 2)));
+  return select(value(x) == 0 && (value(p) == 0 || value(p) == 1), T(0), T(p * (p - 1) * power(x, P(p - 2))));
 }
 
 }  // namespace detail
 
 template <Differentiable X>
 X min(const X& x, const X& y) {
-  return y < x ? y : x;
+  return select(y < x, y, x);
 }
 template <Differentiable X>
 X max(const X& x, const X& y) {
-  return x < y ? y : x;
+  return select(x < y, y, x);
 }
 template <Differentiable X, PassiveFor<X> S>
 X min(const X& x, const S& s) {
-  return s < x ? X(s) : x;
+  return select(s < x, X(s), x);
 }
 template <Differentiable X, PassiveFor<X> S>
 X min(const S& s, const X& x) {
-  return x < s ? x : X(s);
+  return select(x < s, x, X(s));
 }
 template <Differentiable X, PassiveFor<X> S>
 X max(const X& x, const S& s) {
-  return x < s ? X(s) : x;
+  return select(x < s, X(s), x);
 }
 template <Differentiable X, PassiveFor<X> S>
 X max(const S& s, const X& x) {
-  return s < x ? x : X(s);
+  return select(s < x, x, X(s));
 }
 
 template <Differentiable X>
 X hypot(const X& x, const X& y) {
   using std::hypot;
   using T = typename X::Inner;
-  const auto f = hypot(x.f, y.f);
-  if (f == 0) return chain(x, y, f, T(0), T(0), [] { return detail::Second<T>{T(0), T(0), T(0)}; });
-  const T fx = x.f / f, fy = y.f / f;
-  return chain(x, y, f, fx, fy, [&] { return detail::Second<T>{fy * fy / f, -fx * fy / f, fx * fx / f}; });
+  const T f = hypot(x.f, y.f);
+  const auto zero = value(f) == 0;
+  const T r = select(zero, T(1), f);  // divides where f does not
+  const T fx = select(zero, T(0), T(x.f / r)), fy = select(zero, T(0), T(y.f / r));
+  return chain(x, y, f, fx, fy, [&] { return detail::Second<T>{T(fy * fy / r), T(-fx * fy / r), T(fx * fx / r)}; });
 }
 
 template <Differentiable X>
 X atan2(const X& y, const X& x) {
   using std::atan2, std::hypot;
   using T = typename X::Inner;
-  const T r = hypot(x.f, y.f);
-  if (r == 0) return chain(y, x, T(atan2(y.f, x.f)), T(0), T(0), [] { return detail::Second<T>{T(0), T(0), T(0)}; });
-  const T c = x.f / r, s = y.f / r;
+  const T length = hypot(x.f, y.f);
+  const auto zero = value(length) == 0;
+  const T r = select(zero, T(1), length);
+  const T c = select(zero, T(0), T(x.f / r)), s = select(zero, T(0), T(y.f / r));
   return chain(y, x, T(atan2(y.f, x.f)), T(c / r), T(-s / r), [&] {
     const T mixed = 2 * c * s / (r * r);
-    return detail::Second<T>{-mixed, (s * s - c * c) / (r * r), mixed};
+    return detail::Second<T>{T(-mixed), T((s * s - c * c) / (r * r)), mixed};
   });
 }
 
@@ -105,7 +107,7 @@ X pow(const P& base, const X& y) {
   using T = typename X::Inner;
   const T b = detail::constant<X>(base);
   const T f = detail::power(b, y.f);
-  const T l = value(b) == 0 && value(y) >= 0 ? T(0) : T(log(b));
+  const T l = select(value(b) == 0 && value(y) >= 0, T(0), T(log(b)));
   return chain(y, f, T(f * l), [&]() -> T { return f * l * l; });
 }
 
@@ -115,10 +117,11 @@ X pow(const X& x, const X& y) {
   using T = typename X::Inner;
   if (detail::inert(y)) return pow(x, y.f);
   const T f = detail::power(x.f, y.f);
-  const bool flat = value(x) == 0 && value(y) >= 0;
-  const T l = flat ? T(0) : T(log(x.f));
+  const auto flat = value(x) == 0 && value(y) >= 0;
+  const T l = select(flat, T(0), T(log(x.f)));
   return chain(x, y, f, detail::power_derivative(x.f, y.f), T(f * l), [&] {
-    const T mixed = flat && value(y) > 1 ? T(0) : T(detail::power(x.f, T(y.f - 1)) * (1 + y.f * T(log(x.f))));
+    const T mixed =
+        select(flat && value(y) > 1, T(0), T(detail::power(x.f, T(y.f - 1)) * (1 + y.f * T(log(x.f)))));
     return detail::Second<T>{detail::power_second(x.f, y.f), mixed, f * l * l};
   });
 }

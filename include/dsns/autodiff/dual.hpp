@@ -43,8 +43,13 @@ struct Dual {
   }
   friend bool derivatives_vanish(const Dual& x) {
     bool zero = detail::inert(x.f);
-    for (const T& d : x.g) zero = zero && d == T(0) && detail::inert(d);
+    for (const T& d : x.g) zero = zero && detail::everywhere(d == T(0)) && detail::inert(d);
     return zero;
+  }
+  /// a where the mask holds, else b, for T over a Batch.
+  template <class M>
+  requires(!std::is_convertible_v<M, bool>) friend Dual select(const M& mask, const Dual& a, const Dual& b) {
+    return Dual(select(mask, a.f, b.f), each([&](const T& da, const T& db) { return select(mask, da, db); }, a.g, b.g));
   }
 
   DSNS_INLINE friend Dual operator+(const Dual& a) { return a; }
@@ -118,10 +123,10 @@ struct Dual {
   DSNS_INLINE Dual& operator/=(const Dual& b) { return *this = *this / b; }
 
   /// Comparisons see values only.
-  friend bool operator==(const Dual& a, const Dual& b) { return a.f == b.f; }
+  friend auto operator==(const Dual& a, const Dual& b) { return a.f == b.f; }
   friend auto operator<=>(const Dual& a, const Dual& b) { return a.f <=> b.f; }
   template <PassiveFor<Dual> S>
-  friend bool operator==(const Dual& a, const S& s) {
+  friend auto operator==(const Dual& a, const S& s) {
     return a.f == detail::constant<Dual>(s);
   }
   template <PassiveFor<Dual> S>

@@ -43,9 +43,14 @@ DSNS_INLINE X sqr(const X& x) {
 
 template <Differentiable X>
 DSNS_INLINE X abs(const X& x) {
-  using T = typename X::Inner;
-  if (x.f == 0) return chain(x, T(0), T(0), [] { return T(0); });
-  return x.f < 0 ? -x : x;
+  if constexpr (std::is_arithmetic_v<Passive<X>>) {
+    using T = typename X::Inner;
+    if (x.f == 0) return chain(x, T(0), T(0), [] { return T(0); });
+    return x.f < 0 ? X(-x) : x;
+  } else {
+    using P = Passive<X>;
+    return x * select(value(x) < 0, P(-1), select(value(x) == 0, P(0), P(1)));
+  }
 }
 template <Differentiable X>
 DSNS_INLINE X fabs(const X& x) {

@@ -74,9 +74,14 @@ struct Jet2 {
   }
   friend bool derivatives_vanish(const Jet2& x) {
     bool zero = detail::inert(x.f);
-    for (const T& d : x.g) zero = zero && d == T(0) && detail::inert(d);
-    for (const T& d : x.h) zero = zero && d == T(0) && detail::inert(d);
+    for (const T& d : x.g) zero = zero && detail::everywhere(d == T(0)) && detail::inert(d);
+    for (const T& d : x.h) zero = zero && detail::everywhere(d == T(0)) && detail::inert(d);
     return zero;
+  }
+  /// a where the mask holds, else b, for T over a Batch.
+  template <class M>
+  requires(!std::is_convertible_v<M, bool>) friend Jet2 select(const M& mask, const Jet2& a, const Jet2& b) {
+    return each(a, b, [&](const T& x, const T& y) { return select(mask, x, y); });
   }
 
   DSNS_INLINE friend Jet2 operator+(const Jet2& a) { return a; }
@@ -175,10 +180,10 @@ struct Jet2 {
   DSNS_INLINE Jet2& operator/=(const Jet2& b) { return *this = *this / b; }
 
   /// Comparisons see values only.
-  friend bool operator==(const Jet2& a, const Jet2& b) { return a.f == b.f; }
+  friend auto operator==(const Jet2& a, const Jet2& b) { return a.f == b.f; }
   friend auto operator<=>(const Jet2& a, const Jet2& b) { return a.f <=> b.f; }
   template <PassiveFor<Jet2> S>
-  friend bool operator==(const Jet2& a, const S& s) {
+  friend auto operator==(const Jet2& a, const S& s) {
     return a.f == detail::constant<Jet2>(s);
   }
   template <PassiveFor<Jet2> S>

@@ -67,7 +67,19 @@ constexpr Passive<X> value(const X& x) {
   }
 }
 
+/// condition ? a : b; scalars over a Batch have their own, lane by lane.
+template <class X>
+constexpr const X& select(bool condition, const X& a, const X& b) {
+  return condition ? a : b;
+}
+
 namespace detail {
+
+constexpr bool everywhere(bool condition) { return condition; }
+template <class M>
+bool everywhere(const M& mask) {
+  return all(mask);
+}
 
 /// The constant s in the form in which X's arithmetic takes it: numbers as X's passive type, inner scalars as they are.
 template <class X, class S>

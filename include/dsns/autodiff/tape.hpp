@@ -110,6 +110,11 @@ struct Var {
     y.settle();
     return Var(w, push(x.t_, wx, y.t_, wy, w));
   }
+  /// a where the mask holds, else b, for T over a Batch.
+  template <class M>
+  requires(!std::is_convertible_v<M, bool>) friend Var select(const M& mask, const Var& a, const Var& b) {
+    return chain(a, b, T(select(mask, a.f, b.f)), T(select(mask, T(1), T(0))), T(select(mask, T(0), T(1))), none);
+  }
   friend bool derivatives_vanish(const Var& x) { return x.t_.is_constant() && detail::inert(x.f); }
 
   friend Var operator+(Var a) { return a; }
@@ -194,10 +199,10 @@ struct Var {
   Var& operator/=(const Var& b) { return *this = *this / b; }
 
   /// Comparisons see values only.
-  friend bool operator==(const Var& a, const Var& b) { return a.f == b.f; }
+  friend auto operator==(const Var& a, const Var& b) { return a.f == b.f; }
   friend auto operator<=>(const Var& a, const Var& b) { return a.f <=> b.f; }
   template <PassiveFor<Var> S>
-  friend bool operator==(const Var& a, const S& s) {
+  friend auto operator==(const Var& a, const S& s) {
     return a.f == detail::constant<Var>(s);
   }
   template <PassiveFor<Var> S>
@@ -270,7 +275,10 @@ struct Var {
     }
     if (x.is_constant()) {
       if (negative) return scaled(y, yf, T(-1));
-      if (!(std::is_arithmetic_v<T> && w == yf)) y.shift();
+      if constexpr (std::is_arithmetic_v<T>) {
+        if (w == yf) return y;
+      }
+      y.shift();
       return y;
     }
     check(x, y);

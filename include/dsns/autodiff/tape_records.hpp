@@ -53,9 +53,7 @@ struct Run {
   std::ptrdiff_t stride_b() const { return std::int32_t(std::uint32_t(stride)); }
   std::ptrdiff_t stride_a() const { return std::int32_t(std::uint32_t((stride - std::uint64_t(stride_b())) >> 32)); }
   std::uint32_t size() const {
-    if (stride == 0) return 1;
-    return static_cast<std::uint32_t>(stride_b() != 0 ? (std::int64_t(Term{next}.b()) - first.b()) / stride_b()
-                                                      : (std::int64_t(Term{next}.a()) - first.a()) / stride_a());
+    return stride == 0 ? 1 : static_cast<std::uint32_t>(std::int64_t(next - first.bits) / std::int64_t(stride));
   }
 
  private:
