@@ -1,10 +1,12 @@
 // dsns: elastic analysis of moving surfaces from the command line.
 #include "commands.hpp"
 
+#include <dsns/core/errors.hpp>
 #include <dsns/version.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <thread>
@@ -34,17 +36,25 @@ void add_fit(CLI::App* command, Settings& settings) {
       ->check(CLI::Range(0.0, 1e6));
 }
 
-void add_registration(CLI::App* command, Settings& settings) {
-  const std::map<std::string, Representation> kinds{{"sampled", Representation::sampled},
-                                                    {"neural", Representation::neural}};
-  command->add_option("--surface", settings.representation, "sampled: the mesh itself; neural: a network fitted to it")
-      ->transform(CLI::CheckedTransformer(kinds));
-  const std::map<std::string, dsns::RotationSearch> searches{{"upright", dsns::RotationSearch::upright},
-                                                             {"full", dsns::RotationSearch::full}};
+/// An option that takes one of a few words.
+template <class E>
+void add_choice(CLI::App* command, const std::string& name, E& value, const std::map<std::string, E>& words,
+                const std::string& what) {
+  std::string list;
+  for (const auto& [word, meaning] : words) list += (list.empty() ? "" : " or ") + word;
   command
-      ->add_option("--search", settings.search,
-                   "upright: the bodies stand alike (same up, same heading); full: they lie at will")
-      ->transform(CLI::CheckedTransformer(searches));
+      ->add_option_function<std::string>(name, [&value, words](const std::string& word) { value = words.at(word); }, what)
+      ->check(CLI::Validator(
+          [words, list](std::string& word) { return words.count(word) ? "" : "'" + word + "' is not a choice: give " + list; },
+          list));
+}
+
+void add_registration(CLI::App* command, Settings& settings) {
+  add_choice(command, "--surface", settings.representation, {{"sampled", Representation::sampled}, {"neural", Representation::neural}},
+             "sampled: the mesh itself; neural: a network fitted to it");
+  add_choice(command, "--search", settings.search,
+             {{"upright", dsns::RotationSearch::upright}, {"full", dsns::RotationSearch::full}},
+             "upright: the bodies stand alike (same up, same heading); full: they lie at will");
   add_fit(command, settings);
 }
 
@@ -60,6 +70,34 @@ std::vector<Body> load(const std::vector<std::string>& sources, const Settings& 
     report.section("");
   }
   return bodies;
+}
+
+/// What is wrong with the words of the command line, where the parser would complain of something else; or nothing.
+std::string misspelt(const CLI::App& app, int argc, char** argv) {
+  const auto is_option = [](const std::string& word) { return word.size() > 1 && word[0] == '-'; };
+  if (argc < 2 || is_option(argv[1])) return "";
+  const CLI::App* const command = app.get_subcommand_no_throw(argv[1]);
+  if (command == nullptr) {
+    std::string names;
+    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) names += " " + sub->get_name();
+    return dsns::message("there is no command '", argv[1], "': choose one of", names);
+  }
+  for (int i = 2; i < argc; ++i) {
+    const std::string word = argv[i], name = word.substr(0, word.find('='));
+    if (word.rfind("--", 0) == 0 && word.size() > 2 && command->get_option_no_throw(name) == nullptr)
+      return dsns::message("there is no option ", name, " of '", argv[1], "': see dsns ", argv[1], " --help");
+  }
+  return "";
+}
+
+/// Refuses before the work what could not be written after it.
+void check_output(const std::string& path, const std::string& extension) {
+  if (path.empty()) return;
+  const std::filesystem::path file(path), folder = file.has_parent_path() ? file.parent_path() : ".";
+  dsns::require<dsns::FileError>(std::filesystem::is_directory(folder), "cannot write ", path, ": there is no folder ",
+                                 folder.string(), "; make it first");
+  dsns::require<dsns::FileError>(extension.empty() || file.extension() == extension, "cannot write ", path, ": name it *",
+                                 extension);
 }
 
 }  // namespace
@@ -80,7 +118,10 @@ int main(int argc, char** argv) {
       "or a folder of OBJ frames. Try: dsns demo -o demo");
   const auto command = [&](const std::string& name, const std::string& what, auto run) {
     CLI::App* sub = app.add_subcommand(name, what);
-    sub->callback([&, run] {
+    sub->callback([&, run, name] {
+      check_output(settings.json, "");
+      if (name != "demo") check_output(out, ".glb");
+      check_output(overview, ".glb");
       run();
       report.save(settings.json);
     });
@@ -110,7 +151,7 @@ int main(int argc, char** argv) {
   register_command->add_option("-o,--output", out, "write both and the registered second to this GLB");
   add_registration(register_command, settings);
 
-  CLI::App* geodesic_command = command("geodesic", "the shortest way from one animation to another", [&] {
+  CLI::App* geodesic_command = command("geodesic", "the way from one animation to another, and their distance", [&] {
     const std::vector<Body> bodies = load(sources, settings, report);
     geodesic(bodies[0], bodies[1], out, steps, settings, report);
   });
@@ -139,6 +180,10 @@ int main(int argc, char** argv) {
   demo_command->get_option("--surface")
       ->description("neural (default here): a network fitted to each; sampled: the mesh itself");
 
+  if (const std::string wrong = misspelt(app, argc, argv); !wrong.empty()) {
+    std::cerr << "dsns: " << wrong << '\n';
+    return usage_error;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

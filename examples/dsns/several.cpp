@@ -32,6 +32,16 @@ void report_registration(const MovingRegistration& r, Report& report) {
   report.figure("temporal.energy_after", "temporal energy after", t.energy_after);
   report.figure("temporal.min_slope", "smallest slope of the time warp", t.min_slope);
   report.figure("temporal.stop", "stopped because", t.stop);
+  // Where the figures say that the result is doubtful, so do we.
+  const auto note = [&](const std::string& text) { report.say("  Note: " + text); };
+  if (s.energy_after > 0.3 * s.norm)
+    note("little of the bodies' shape corresponds; look at the colours before you use the result.");
+  if (t.min_slope < 1.02 * TemporalOptions{}.min_slope)
+    note("the clocks hardly agree (the slope is at its limit); do both clips start at the same phase?");
+}
+
+void say_not_written(Report& report, const std::string& option = "-o FILE.glb") {
+  report.say("  No animation was written: give " + option + " for one.");
 }
 
 void say_units(Report& report) {
@@ -72,7 +82,7 @@ void register_two(const Body& a, const Body& b, const std::filesystem::path& out
       register_moving(a.surface, b.surface, a.sphere, registration_options(settings), std::ref(line));
   report_registration(r, report);
   say_units(report);
-  if (out.empty()) return;
+  if (out.empty()) return say_not_written(report);
   Scene scene;
   const Mat3X colors = place_colors(a, a.sphere.vertices);
   scene.add(as_represented(a, settings.frames), colors);
@@ -98,7 +108,7 @@ void geodesic(const Body& a, const Body& b, const std::filesystem::path& out, in
   report.figure("components_residual", "mean squared error they leave", pca.residual());
   report.figure("distance", "distance", path.distance());
   say_units(report);
-  if (out.empty()) return;
+  if (out.empty()) return say_not_written(report);
 
   const int frames = settings.frames;
   const Mat3X colors = place_colors(a, a.sphere.vertices);
@@ -158,6 +168,7 @@ void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, con
   report.figure("min_slope", "smallest slope of the time warps", summary.min_slope);
   report.figure("converged", "converged", summary.converged);
   say_units(report);
+  if (out.empty() && overview.empty()) return say_not_written(report, "-o FILE.glb or --overview FILE.glb");
 
   Scene all;
   const Mat3X colors = place_colors(bodies.front(), sphere.vertices);

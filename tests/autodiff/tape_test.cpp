@@ -142,7 +142,7 @@ TEMPLATE_TEST_CASE("tape: sums of products have the derivatives of forward mode"
     if constexpr (Differentiable<T>) {
       return std::abs(x.f - y.f) + std::abs(x.g[0] - y.g[0]) + std::abs(x.g[1] - y.g[1]);
     } else {
-      return std::abs(x - y);
+      return double(std::abs(x - y));
     }
   };
   for (std::uint32_t seed = 0; seed < 400; ++seed) {
@@ -151,7 +151,7 @@ TEMPLATE_TEST_CASE("tape: sums of products have the derivatives of forward mode"
     std::array<Var<T>, 6> x;
     std::array<D, 6> d;
     for (int k = 0; k < 6; ++k) {
-      T start(0.7 - 0.25 * k);
+      T start = static_cast<T>(0.7 - 0.25 * k);
       if constexpr (Differentiable<T>) start.g = {0.5 * k - 1, 1.0};
       x[std::size_t(k)] = tape.variable(start);
       d[std::size_t(k)] = D::variable(start, k);

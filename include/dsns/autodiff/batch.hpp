@@ -36,15 +36,15 @@ struct Mask {
   Vector m;  // 0 or -1
 
   bool operator[](int i) const { return m[i] != 0; }
-  friend Mask operator&&(Mask a, Mask b) { return {a.m & b.m}; }
-  friend Mask operator||(Mask a, Mask b) { return {a.m | b.m}; }
-  friend Mask operator!(Mask a) { return {~a.m}; }
-  friend bool any(Mask a) {
+  friend Mask operator&&(const Mask& a, const Mask& b) { return {a.m & b.m}; }
+  friend Mask operator||(const Mask& a, const Mask& b) { return {a.m | b.m}; }
+  friend Mask operator!(const Mask& a) { return {~a.m}; }
+  friend bool any(const Mask& a) {
     bool r = false;
     for (int i = 0; i < L; ++i) r = r || a[i];
     return r;
   }
-  friend bool all(Mask a) { return !any(!a); }
+  friend bool all(const Mask& a) { return !any(!a); }
 };
 
 /// Left uninitialised by the default constructor, as numbers are.

@@ -27,7 +27,10 @@ struct Dual {
   template <class S>
   requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) DSNS_INLINE Dual(const S& s)
       : f(static_cast<T>(s)), g(Tangents<T, N>::zero()) {}
-  DSNS_INLINE Dual(T f_, Tangents<T, N> g_) : f(std::move(f_)), g(std::move(g_)) {}
+  Dual(const T& f_, const Tangents<T, N>& g_) : f(f_), g(g_) {}
+  template <class F, class G>
+  requires(std::is_same_v<std::remove_cvref_t<F>, T> && std::is_same_v<std::remove_cvref_t<G>, Tangents<T, N>>)
+      DSNS_INLINE Dual(F&& f_, G&& g_) : f(std::forward<F>(f_)), g(std::forward<G>(g_)) {}
   /// The k-th independent variable: derivative 1 in direction k, 0 in the others.
   DSNS_INLINE static Dual variable(const T& x0, int k) { return Dual(x0, Tangents<T, N>::unit(k)); }
 
@@ -123,10 +126,10 @@ struct Dual {
   DSNS_INLINE Dual& operator/=(const Dual& b) { return *this = *this / b; }
 
   /// Comparisons see values only.
-  friend auto operator==(const Dual& a, const Dual& b) { return a.f == b.f; }
+  friend detail::Equality<T> operator==(const Dual& a, const Dual& b) { return a.f == b.f; }
   friend auto operator<=>(const Dual& a, const Dual& b) { return a.f <=> b.f; }
   template <PassiveFor<Dual> S>
-  friend auto operator==(const Dual& a, const S& s) {
+  friend detail::Equality<T> operator==(const Dual& a, const S& s) {
     return a.f == detail::constant<Dual>(s);
   }
   template <PassiveFor<Dual> S>

@@ -28,8 +28,11 @@ struct Jet2 {
   template <class S>
   requires(std::is_arithmetic_v<S> || std::is_same_v<S, T> || PassiveFor<S, T>) DSNS_INLINE Jet2(const S& s)
       : f(static_cast<T>(s)), g(Tangents<T, N>::zero()), h(Tangents<T, packed>::zero()) {}
-  DSNS_INLINE Jet2(T f_, Tangents<T, N> g_, Tangents<T, packed> h_)
-      : f(std::move(f_)), g(std::move(g_)), h(std::move(h_)) {}
+  Jet2(const T& f_, const Tangents<T, N>& g_, const Tangents<T, packed>& h_) : f(f_), g(g_), h(h_) {}
+  template <class F, class G, class H>
+  requires(std::is_same_v<std::remove_cvref_t<F>, T> && std::is_same_v<std::remove_cvref_t<G>, Tangents<T, N>> &&
+           std::is_same_v<std::remove_cvref_t<H>, Tangents<T, packed>>) DSNS_INLINE Jet2(F&& f_, G&& g_, H&& h_)
+      : f(std::forward<F>(f_)), g(std::forward<G>(g_)), h(std::forward<H>(h_)) {}
   /// The k-th independent variable.
   DSNS_INLINE static Jet2 variable(const T& x0, int k) {
     return Jet2(x0, Tangents<T, N>::unit(k), Tangents<T, packed>::zero());
@@ -180,10 +183,10 @@ struct Jet2 {
   DSNS_INLINE Jet2& operator/=(const Jet2& b) { return *this = *this / b; }
 
   /// Comparisons see values only.
-  friend auto operator==(const Jet2& a, const Jet2& b) { return a.f == b.f; }
+  friend detail::Equality<T> operator==(const Jet2& a, const Jet2& b) { return a.f == b.f; }
   friend auto operator<=>(const Jet2& a, const Jet2& b) { return a.f <=> b.f; }
   template <PassiveFor<Jet2> S>
-  friend auto operator==(const Jet2& a, const S& s) {
+  friend detail::Equality<T> operator==(const Jet2& a, const S& s) {
     return a.f == detail::constant<Jet2>(s);
   }
   template <PassiveFor<Jet2> S>

@@ -2,6 +2,7 @@
 /// What a differentiable scalar is: a value `f` of some inner type plus derivatives. Dual, Jet2 and Var are such
 /// scalars, and nest in one another; at the bottom lies an arithmetic type, the passive scalar.
 #include <type_traits>
+#include <utility>
 
 /// For operators of a few instructions each, which compilers count as calls when they decide what to inline.
 #if defined(__GNUC__)
@@ -74,6 +75,10 @@ constexpr const X& select(bool condition, const X& a, const X& b) {
 }
 
 namespace detail {
+
+/// bool, or the mask of a batch.
+template <class T>
+using Equality = decltype(std::declval<const T&>() == std::declval<const T&>());
 
 constexpr bool everywhere(bool condition) { return condition; }
 template <class M>

@@ -82,11 +82,15 @@ struct Entries {
   }
 };
 
+template <class T, int N>
+using TangentArray = std::conditional_t<std::is_trivially_copyable_v<T> && std::is_arithmetic_v<Passive<T>>,
+                                        std::array<T, std::size_t(N)>, Entries<T, N>>;
+
 }  // namespace detail
 
 /// Left uninitialised by the default constructor, as numbers are.
 template <class T, int N>
-struct Tangents : std::conditional_t<std::is_arithmetic_v<T>, std::array<T, std::size_t(N)>, detail::Entries<T, N>> {
+struct Tangents : detail::TangentArray<T, N> {
   static constexpr bool is_vector = false;
 
   Tangents() = default;
@@ -121,7 +125,7 @@ struct Tangents : std::conditional_t<std::is_arithmetic_v<T>, std::array<T, std:
   }
 
  private:
-  using Base = std::conditional_t<std::is_arithmetic_v<T>, std::array<T, std::size_t(N)>, detail::Entries<T, N>>;
+  using Base = detail::TangentArray<T, N>;
 
   /// Few entries without a loop, which would keep them from registers.
   template <class Visit>

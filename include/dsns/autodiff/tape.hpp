@@ -199,10 +199,10 @@ struct Var {
   Var& operator/=(const Var& b) { return *this = *this / b; }
 
   /// Comparisons see values only.
-  friend auto operator==(const Var& a, const Var& b) { return a.f == b.f; }
+  friend detail::Equality<T> operator==(const Var& a, const Var& b) { return a.f == b.f; }
   friend auto operator<=>(const Var& a, const Var& b) { return a.f <=> b.f; }
   template <PassiveFor<Var> S>
-  friend auto operator==(const Var& a, const S& s) {
+  friend detail::Equality<T> operator==(const Var& a, const S& s) {
     return a.f == detail::constant<Var>(s);
   }
   template <PassiveFor<Var> S>
@@ -214,6 +214,8 @@ struct Var {
   friend class Tape<T>;
   using Terms = detail::VarTerms;
   using Term = detail::Term;
+  /// Numbers by value: the address of a variable that is passed on keeps it from registers.
+  using Argument = std::conditional_t<std::is_arithmetic_v<T>, T, const T&>;
   static constexpr auto none = [] {};
 
   mutable Terms t_;
@@ -238,18 +240,18 @@ struct Var {
       t_ = recorded(t_.recording(), place_of(t_, f));
   }
   /// The place of terms with value w, recorded now where they have none.
-  [[gnu::noinline]] static std::uint32_t place_of(Terms t, T w) {
+  [[gnu::noinline]] static std::uint32_t place_of(Terms t, Argument w) {
     if (t.settled()) return t.place();
     auto& tape = records(t);
     return t.state() == Terms::open ? tape.close_run(t.run(), w) : tape.push_term(0, Term{t.operands}, w);
   }
 
   /// A result w with derivative d in the settled x, or with wx and wy in x and y; they may be constants.
-  [[gnu::noinline]] static Terms push(Terms x, T d, T w) {
+  [[gnu::noinline]] static Terms push(Terms x, Argument d, Argument w) {
     if (x.is_constant()) return x;
     return recorded(x.recording(), records(x).push(x.place(), d, w));
   }
-  [[gnu::noinline]] static Terms push(Terms x, T wx, Terms y, T wy, T w) {
+  [[gnu::noinline]] static Terms push(Terms x, Argument wx, Terms y, Argument wy, Argument w) {
     if (x.is_constant() && y.is_constant()) return x;
     const Terms& active = x.is_constant() ? y : x;
     check(x, y);
@@ -268,7 +270,7 @@ struct Var {
     if (!exact_and_active(x) || !exact_and_active(y)) return general_sum(x, y, negative, xf, yf, w);
     return recorded(x.tag, records(x).push(x.place(), T(1), y.place(), T(negative ? -1 : 1), w));
   }
-  [[gnu::noinline]] static Terms general_sum(Terms x, Terms y, bool negative, T xf, T yf, T w) {
+  [[gnu::noinline]] static Terms general_sum(Terms x, Terms y, bool negative, Argument xf, Argument yf, Argument w) {
     if (y.is_constant()) {
       x.shift();
       return x;
@@ -301,7 +303,7 @@ struct Var {
     f = w;
   }
   /// A sum of x and the term y.
-  [[gnu::noinline]] static Terms opened(Terms x, Terms y, Term term, T xf) {
+  [[gnu::noinline]] static Terms opened(Terms x, Terms y, Term term, Argument xf) {
     check(x, y);
     auto& tape = records(y);
     const std::uint32_t base = x.is_constant() ? 0 : place_of(x, xf);
@@ -331,7 +333,7 @@ struct Var {
       return {Term::of(records(t).push_weight(c), t.place(), Term::weighted).bits, t.tag | Terms::term};
     return general_scaled(t, w, c);
   }
-  [[gnu::noinline]] static Terms general_scaled(Terms t, T w, T c) {
+  [[gnu::noinline]] static Terms general_scaled(Terms t, Argument w, Argument c) {
     if (t.is_constant()) return t;
     auto& tape = records(t);
     const Linear l = linear(t, w);
@@ -352,7 +354,7 @@ struct Var {
     }
     return {place_of(t, w), T(1)};
   }
-  [[gnu::noinline]] static Terms general_product(Terms a, Terms b, T af, T bf) {
+  [[gnu::noinline]] static Terms general_product(Terms a, Terms b, Argument af, Argument bf) {
     if (b.is_constant()) return general_scaled(a, af, bf);
     if (a.is_constant()) return general_scaled(b, bf, af);
     check(a, b);
