@@ -23,6 +23,30 @@ bool inert(const X& x) {
   }
 }
 
+/// a b, which is 0 for b = 0 also where a is not finite: a direction in which an argument stands still.
+template <class T>
+T times(const T& a, const T& b) {
+  return value(b) == 0 && inert(b) ? T(0) : T(a * b);
+}
+
+/// chain for functions whose derivatives may be infinite or undefined.
+template <class X, class T, class Second>
+DSNS_INLINE X singular_chain(const X& x, const T& w, const T& d, const Second& second) {
+  if constexpr (std::is_arithmetic_v<Passive<X>> && requires { careful_chain(x, w, d, second); }) {
+    if (!std::isfinite(value(d))) [[unlikely]]
+      return careful_chain(x, w, d, second);
+  }
+  return chain(x, w, d, second);
+}
+template <class X, class T, class Second>
+DSNS_INLINE X singular_chain(const X& x, const X& y, const T& w, const T& wx, const T& wy, const Second& second) {
+  if constexpr (std::is_arithmetic_v<Passive<X>> && requires { careful_chain(x, y, w, wx, wy, second); }) {
+    if (!std::isfinite(value(wx)) || !std::isfinite(value(wy)) || value(x) == 0) [[unlikely]]
+      return careful_chain(x, y, w, wx, wy, second);
+  }
+  return chain(x, y, w, wx, wy, second);
+}
+
 template <class T, class P>
 T power(const T& x, const P& p) {
   using std::pow;
@@ -97,7 +121,7 @@ template <Differentiable X, PassiveFor<X> P>
 X pow(const X& x, const P& p) {
   using T = typename X::Inner;
   const auto& q = detail::constant<X>(p);
-  return chain(x, detail::power(x.f, q), detail::power_derivative(x.f, q),
+  return detail::singular_chain(x, T(detail::power(x.f, q)), T(detail::power_derivative(x.f, q)),
                [&]() -> T { return detail::power_second(x.f, q); });
 }
 
@@ -108,7 +132,7 @@ X pow(const P& base, const X& y) {
   const T b = detail::constant<X>(base);
   const T f = detail::power(b, y.f);
   const T l = select(value(b) == 0 && value(y) >= 0, T(0), T(log(b)));
-  return chain(y, f, T(f * l), [&]() -> T { return f * l * l; });
+  return detail::singular_chain(y, f, T(f * l), [&]() -> T { return f * l * l; });
 }
 
 template <Differentiable X>
@@ -119,7 +143,7 @@ X pow(const X& x, const X& y) {
   const T f = detail::power(x.f, y.f);
   const auto flat = value(x) == 0 && value(y) >= 0;
   const T l = select(flat, T(0), T(log(x.f)));
-  return chain(x, y, f, detail::power_derivative(x.f, y.f), T(f * l), [&] {
+  return detail::singular_chain(x, y, f, detail::power_derivative(x.f, y.f), T(f * l), [&] {
     const T mixed =
         select(flat && value(y) > 1, T(0), T(detail::power(x.f, T(y.f - 1)) * (1 + y.f * T(log(x.f)))));
     return detail::Second<T>{detail::power_second(x.f, y.f), mixed, f * l * l};

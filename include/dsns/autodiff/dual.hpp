@@ -44,6 +44,19 @@ struct Dual {
   DSNS_INLINE friend Dual chain(const Dual& x, const Dual& y, const T& w, const T& wx, const T& wy, const Second&) {
     return Dual(w, each([&](const auto& dx, const auto& dy) { return wx * dx + wy * dy; }, x.g, y.g));
   }
+  /// The same where derivatives are not finite: a direction in which x stands still keeps derivative 0.
+  template <class Second>
+  friend Dual careful_chain(const Dual& x, const T& w, const T& d, const Second&) {
+    Dual r(w);
+    for (std::size_t i = 0; i < N; ++i) r.g[i] = detail::times(d, T(x.g[i]));
+    return r;
+  }
+  template <class Second>
+  friend Dual careful_chain(const Dual& x, const Dual& y, const T& w, const T& wx, const T& wy, const Second&) {
+    Dual r(w);
+    for (std::size_t i = 0; i < N; ++i) r.g[i] = detail::times(wx, T(x.g[i])) + detail::times(wy, T(y.g[i]));
+    return r;
+  }
   friend bool derivatives_vanish(const Dual& x) {
     bool zero = detail::inert(x.f);
     for (const T& d : x.g) zero = zero && detail::everywhere(d == T(0)) && detail::inert(d);

@@ -78,7 +78,7 @@ DSNS_INLINE X sqrt(const X& x) {
   using std::sqrt;
   const auto f = sqrt(x.f);
   const auto d = 1 / (2 * f);
-  return chain(x, f, d, [&] { return -d / (2 * x.f); });
+  return detail::singular_chain(x, f, d, [&] { return -d / (2 * x.f); });
 }
 
 template <Differentiable X>
@@ -86,7 +86,7 @@ DSNS_INLINE X cbrt(const X& x) {
   using std::cbrt;
   const auto f = cbrt(x.f);
   const auto d = 1 / (3 * f * f);
-  return chain(x, f, d, [&] { return -2 * d / (3 * x.f); });
+  return detail::singular_chain(x, f, d, [&] { return -2 * d / (3 * x.f); });
 }
 
 template <Differentiable X>
@@ -115,28 +115,28 @@ template <Differentiable X>
 DSNS_INLINE X log(const X& x) {
   using std::log;
   const auto d = 1 / x.f;
-  return chain(x, log(x.f), d, [&] { return -d * d; });
+  return detail::singular_chain(x, log(x.f), d, [&] { return -d * d; });
 }
 
 template <Differentiable X>
 DSNS_INLINE X log1p(const X& x) {
   using std::log1p;
   const auto d = 1 / (1 + x.f);
-  return chain(x, log1p(x.f), d, [&] { return -d * d; });
+  return detail::singular_chain(x, log1p(x.f), d, [&] { return -d * d; });
 }
 
 template <Differentiable X>
 DSNS_INLINE X log2(const X& x) {
   using std::log2;
   const auto d = Passive<X>(1.442695040888963407359924681001892137L) / x.f;
-  return chain(x, log2(x.f), d, [&] { return -d / x.f; });
+  return detail::singular_chain(x, log2(x.f), d, [&] { return -d / x.f; });
 }
 
 template <Differentiable X>
 DSNS_INLINE X log10(const X& x) {
   using std::log10;
   const auto d = Passive<X>(0.434294481903251827651128918916605082L) / x.f;
-  return chain(x, log10(x.f), d, [&] { return -d / x.f; });
+  return detail::singular_chain(x, log10(x.f), d, [&] { return -d / x.f; });
 }
 
 /// Sine and cosine of one angle.
@@ -196,7 +196,7 @@ DSNS_INLINE X asin(const X& x) {
   using std::asin, std::sqrt;
   const auto r = (1 - x.f) * (1 + x.f);
   const auto d = 1 / sqrt(r);
-  return chain(x, asin(x.f), d, [&] { return x.f * d / r; });
+  return detail::singular_chain(x, asin(x.f), d, [&] { return x.f * d / r; });
 }
 
 template <Differentiable X>
@@ -204,7 +204,7 @@ DSNS_INLINE X acos(const X& x) {
   using std::acos, std::sqrt;
   const auto r = (1 - x.f) * (1 + x.f);
   const auto d = -1 / sqrt(r);
-  return chain(x, acos(x.f), d, [&] { return x.f * d / r; });
+  return detail::singular_chain(x, acos(x.f), d, [&] { return x.f * d / r; });
 }
 
 template <Differentiable X>
@@ -249,14 +249,14 @@ DSNS_INLINE X acosh(const X& x) {
   using std::acosh, std::sqrt;
   const auto r = (x.f - 1) * (x.f + 1);
   const auto d = 1 / sqrt(r);
-  return chain(x, acosh(x.f), d, [&] { return -x.f * d / r; });
+  return detail::singular_chain(x, acosh(x.f), d, [&] { return -x.f * d / r; });
 }
 
 template <Differentiable X>
 DSNS_INLINE X atanh(const X& x) {
   using std::atanh;
   const auto d = 1 / ((1 - x.f) * (1 + x.f));
-  return chain(x, atanh(x.f), d, [&] { return 2 * x.f * d * d; });
+  return detail::singular_chain(x, atanh(x.f), d, [&] { return 2 * x.f * d * d; });
 }
 
 template <Differentiable X>

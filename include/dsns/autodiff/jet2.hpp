@@ -75,6 +75,31 @@ struct Jet2 {
     }
     return r;
   }
+  /// The same where derivatives are not finite: a direction in which x stands still keeps derivative 0.
+  template <class Second>
+  friend Jet2 careful_chain(const Jet2& x, const T& w, const T& d, const Second& second) {
+    const T d2 = second();
+    Jet2 r(w);
+    for (std::size_t i = 0, m = 0; i < N; ++i) {
+      r.g[i] = detail::times(d, T(x.g[i]));
+      for (std::size_t j = i; j < N; ++j, ++m)
+        r.h[m] = detail::times(d, T(x.h[m])) + detail::times(d2, T(x.g[i] * x.g[j]));
+    }
+    return r;
+  }
+  template <class Second>
+  friend Jet2 careful_chain(const Jet2& x, const Jet2& y, const T& w, const T& wx, const T& wy, const Second& second) {
+    using detail::times;
+    const auto s = second();
+    Jet2 r(w);
+    for (std::size_t i = 0, m = 0; i < N; ++i) {
+      r.g[i] = times(wx, T(x.g[i])) + times(wy, T(y.g[i]));
+      for (std::size_t j = i; j < N; ++j, ++m)
+        r.h[m] = times(wx, T(x.h[m])) + times(wy, T(y.h[m])) + times(T(s.xx), T(x.g[i] * x.g[j])) +
+                 times(T(s.xy), T(x.g[i] * y.g[j] + y.g[i] * x.g[j])) + times(T(s.yy), T(y.g[i] * y.g[j]));
+    }
+    return r;
+  }
   friend bool derivatives_vanish(const Jet2& x) {
     bool zero = detail::inert(x.f);
     for (const T& d : x.g) zero = zero && detail::everywhere(d == T(0)) && detail::inert(d);
