@@ -213,7 +213,9 @@ Method matrix_nodes() {
     double loss = 0;
     for (Eigen::Index first = 0; first < n; first += tile) {
       const Eigen::Index count = std::min(tile, n - first);
-      const auto points = [&](const auto& v) { return Eigen::Map<const Matrix>(v[std::size_t(first)].data(), 3, count); };
+      const auto points = [&](const auto& v) {
+        return Eigen::Map<const Matrix>(v[std::size_t(first)].data(), 3, count);
+      };
       tape.clear();
       const Node w1 = net.node(tape, 0), b1 = net.node(tape, 1), w2 = net.node(tape, 2), b2 = net.node(tape, 3);
       const Node x = tape.constant(points(samples.inputs));
@@ -241,7 +243,9 @@ Method matrix_nodes() {
     double loss = 0;
     for (Eigen::Index first = 0; first < n; first += tile) {
       const Eigen::Index count = std::min(tile, n - first);
-      const auto points = [&](const auto& v) { return Eigen::Map<const Matrix>(v[std::size_t(first)].data(), 3, count); };
+      const auto points = [&](const auto& v) {
+        return Eigen::Map<const Matrix>(v[std::size_t(first)].data(), 3, count);
+      };
       tape.clear();
       const Node w1 = net.node(tape, 0), b1 = net.node(tape, 1), w2 = net.node(tape, 2), b2 = net.node(tape, 3);
       const Node x = tape.constant(3, 6 * count, [&](Matrix& s) {
@@ -251,9 +255,8 @@ Method matrix_nodes() {
       const Node h = jet_layer(tape, w2, b2, jet_layer(tape, w1, b1, x, softplus), softplus);
       const Node out = jet_bias(tape, tape.product(net.node(tape, 4), h), net.node(tape, 5));
       const Node y = tape.add(tape.scale(out, workloads::network_share), x);
-      const Node errors = pointwise<3, 6>(tape, y, [](const auto& f) {
-        return workloads::curvature_error(f[1], f[2], f[3], f[4], f[5]);
-      });
+      const Node errors = pointwise<3, 6>(
+          tape, y, [](const auto& f) { return workloads::curvature_error(f[1], f[2], f[3], f[4], f[5]); });
       const Node sum = tape.sum(errors);
       tape.backward(sum, 1.0 / double(n));
       loss += tape.value(sum)(0, 0);

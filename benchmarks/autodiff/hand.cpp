@@ -46,7 +46,8 @@ SecondOrder second_order(double u, double v, double t) {
   const double quu = -8 * (xu * xu + dx * xuu + yu * yu + dy * yuu + zu * zu + dz * zuu);
   const double quv = -8 * (xu * xv + dx * xuv + yu * yv + dy * yuv);
   const double qvv = -8 * (xv * xv + dx * xvv + yv * yv + dy * yvv);
-  const double eu = e * qu, ev = e * qv, euu = e * (qu * qu + quu), euv = e * (qu * qv + quv), evv = e * (qv * qv + qvv);
+  const double eu = e * qu, ev = e * qv, euu = e * (qu * qu + quu), euv = e * (qu * qv + quv),
+               evv = e * (qv * qv + qvv);
   const double w = x * x - y * y, wu = 2 * (x * xu - y * yu), wv = 2 * (x * xv - y * yv);
   const double wuu = 2 * (xu * xu + x * xuu - yu * yu - y * yuu), wuv = 2 * (xu * xv + x * xuv - yu * yv - y * yuv);
   const double wvv = 2 * (xv * xv + x * xvv - yv * yv - y * yvv);
@@ -129,15 +130,23 @@ struct Parameters {
   Eigen::Map<const Weights> w1, w2, w3;
   Eigen::Map<const VectorXd> b1, b2, b3;
   explicit Parameters(const double* p)
-      : w1(p + S::w1, S::width, S::inputs), w2(p + S::w2, S::width, S::width), w3(p + S::w3, S::outputs, S::width),
-        b1(p + S::b1, S::width), b2(p + S::b2, S::width), b3(p + S::b3, S::outputs) {}
+      : w1(p + S::w1, S::width, S::inputs),
+        w2(p + S::w2, S::width, S::width),
+        w3(p + S::w3, S::outputs, S::width),
+        b1(p + S::b1, S::width),
+        b2(p + S::b2, S::width),
+        b3(p + S::b3, S::outputs) {}
 };
 struct Gradient {
   Eigen::Map<Weights> w1, w2, w3;
   Eigen::Map<VectorXd> b1, b2, b3;
   explicit Gradient(double* p)
-      : w1(p + S::w1, S::width, S::inputs), w2(p + S::w2, S::width, S::width), w3(p + S::w3, S::outputs, S::width),
-        b1(p + S::b1, S::width), b2(p + S::b2, S::width), b3(p + S::b3, S::outputs) {}
+      : w1(p + S::w1, S::width, S::inputs),
+        w2(p + S::w2, S::width, S::width),
+        w3(p + S::w3, S::outputs, S::width),
+        b1(p + S::b1, S::width),
+        b2(p + S::b2, S::width),
+        b3(p + S::b3, S::outputs) {}
 };
 
 }  // namespace
@@ -183,7 +192,7 @@ namespace {
 constexpr Eigen::Index tile = 32;
 
 struct Layer {
-  MatrixXd z, a, back;               // before and after the activation, and what comes back; width x 6 m
+  MatrixXd z, a, back;            // before and after the activation, and what comes back; width x 6 m
   ArrayXXd slope, second, third;  // of the activation at the values, width x m
 
   void activate(Eigen::Index m) {
@@ -248,9 +257,7 @@ double curvature_loss(const std::vector<double>& p, const Charts& charts, std::v
   double loss = 0;
   for (Eigen::Index first = 0; first < n; first += tile) {
     const Eigen::Index m = std::min(tile, n - first);
-    const auto points = [&](const auto& v) {
-      return Eigen::Map<const MatrixXd>(v[std::size_t(first)].data(), 3, m);
-    };
+    const auto points = [&](const auto& v) { return Eigen::Map<const MatrixXd>(v[std::size_t(first)].data(), 3, m); };
     x.setZero(3, 6 * m);
     x.leftCols(m) = points(charts.s);
     x.middleCols(m, m) = points(charts.e1);
@@ -270,7 +277,8 @@ double curvature_loss(const std::vector<double>& p, const Charts& charts, std::v
       for (Eigen::Index k = 0; k < 5; ++k) jet.col(k) = y.col((k + 1) * m + i);
       loss += curvature_error(jet, slope);
       y.col(i).setZero();
-      for (Eigen::Index k = 0; k < 5; ++k) y.col((k + 1) * m + i) = slope.col(k) * (workloads::network_share / double(n));
+      for (Eigen::Index k = 0; k < 5; ++k)
+        y.col((k + 1) * m + i) = slope.col(k) * (workloads::network_share / double(n));
     }
     d.w3.noalias() += y * l2.a.transpose();
     l2.back.noalias() = w.w3.transpose() * y;

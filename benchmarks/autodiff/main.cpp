@@ -98,8 +98,8 @@ double worst(const double* a, const double* b, std::size_t n) {
 using Results = std::map<std::string, std::map<std::string, double>>;
 
 void report(Results& results, const char* workload, const Method& method, const Timing& t, double error) {
-  std::printf("%-5s %-34s %12.3f us %9.2f x hand   error %.0e%s\n", workload, method.name.c_str(), t.microseconds, t.ratio,
-              error, error < 1e-8 ? "" : "   WRONG");
+  std::printf("%-5s %-34s %12.3f us %9.2f x hand   error %.0e%s\n", workload, method.name.c_str(), t.microseconds,
+              t.ratio, error, error < 1e-8 ? "" : "   WRONG");
   std::fflush(stdout);
   results[workload][method.name] = t.ratio;
 }
@@ -153,13 +153,14 @@ Method by_hand() {
   m.rosenbrock = hand::rosenbrock;
   m.arrow = hand::arrow;
   m.log_cosh = [](const std::vector<double>& x, std::vector<double>& g) { return hand::log_cosh(x, data().rows, g); };
-  m.network = [](const std::vector<double>& x, std::vector<double>& g) { return hand::network_loss(x, data().samples, g); };
+  m.network = [](const std::vector<double>& x, std::vector<double>& g) {
+    return hand::network_loss(x, data().samples, g);
+  };
   m.curvature = [](const std::vector<double>& x, std::vector<double>& g) {
     return hand::curvature_loss(x, data().charts, g);
   };
   return m;
 }
-
 
 }  // namespace
 
@@ -176,8 +177,7 @@ int main(int argc, char** argv) {
   std::vector<Method> methods{by_hand()};
   for (const auto& group : {dsns_methods(), ceres_methods(), eigen_methods(), adolc_methods()})
     methods.insert(methods.end(), group.begin(), group.end());
-  if (!only.empty())
-    std::erase_if(methods, [&](const Method& m) { return m.name.find(only) == std::string::npos; });
+  if (!only.empty()) std::erase_if(methods, [&](const Method& m) { return m.name.find(only) == std::string::npos; });
   if (methods.empty()) {
     std::fprintf(stderr, "no method's name holds '%s'\n", only.c_str());
     return 1;
@@ -186,8 +186,7 @@ int main(int argc, char** argv) {
   const Method h = by_hand();
   const Data& d = data();
   Results results;
-  for (const Method& m : methods)
-    pointwise<workloads::FirstOrder>(results, "J3", m, m.first_order, hand::first_order);
+  for (const Method& m : methods) pointwise<workloads::FirstOrder>(results, "J3", m, m.first_order, hand::first_order);
   for (const Method& m : methods)
     pointwise<workloads::SecondOrder>(results, "H2", m, m.second_order, hand::second_order);
   for (const Method& m : methods) sparse_hessian(results, m);

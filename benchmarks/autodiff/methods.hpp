@@ -7,12 +7,12 @@
 #include <vector>
 
 struct Data {
-  workloads::SurfacePoints points;    // 1024
-  std::vector<double> x;              // 1000, for R, A and L
-  workloads::Rows rows;               // 256
-  std::vector<double> parameters;     // of the network
-  workloads::Samples samples;         // 256
-  workloads::Charts charts;           // 256
+  workloads::SurfacePoints points;  // 1024
+  std::vector<double> x;            // 1000, for R, A and L
+  workloads::Rows rows;             // 256
+  std::vector<double> parameters;   // of the network
+  workloads::Samples samples;       // 256
+  workloads::Charts charts;         // 256
 };
 const Data& data();
 

@@ -43,14 +43,18 @@ void add_choice(CLI::App* command, const std::string& name, E& value, const std:
   std::string list;
   for (const auto& [word, meaning] : words) list += (list.empty() ? "" : " or ") + word;
   command
-      ->add_option_function<std::string>(name, [&value, words](const std::string& word) { value = words.at(word); }, what)
+      ->add_option_function<std::string>(
+          name, [&value, words](const std::string& word) { value = words.at(word); }, what)
       ->check(CLI::Validator(
-          [words, list](std::string& word) { return words.count(word) ? "" : "'" + word + "' is not a choice: give " + list; },
+          [words, list](std::string& word) {
+            return words.count(word) ? "" : "'" + word + "' is not a choice: give " + list;
+          },
           list));
 }
 
 void add_registration(CLI::App* command, Settings& settings) {
-  add_choice(command, "--surface", settings.representation, {{"sampled", Representation::sampled}, {"neural", Representation::neural}},
+  add_choice(command, "--surface", settings.representation,
+             {{"sampled", Representation::sampled}, {"neural", Representation::neural}},
              "sampled: the mesh itself; neural: a network fitted to it");
   add_choice(command, "--search", settings.search,
              {{"upright", dsns::RotationSearch::upright}, {"full", dsns::RotationSearch::full}},
@@ -76,12 +80,13 @@ std::vector<Body> load(const std::vector<std::string>& sources, const Settings& 
 std::string misspelt(const CLI::App& app, int argc, char** argv) {
   const auto is_option = [](const std::string& word) { return word.size() > 1 && word[0] == '-'; };
   if (argc < 2 || is_option(argv[1])) return "";
-  const CLI::App* const command = app.get_subcommand_no_throw(argv[1]);
-  if (command == nullptr) {
-    std::string names;
-    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) names += " " + sub->get_name();
-    return dsns::message("there is no command '", argv[1], "': choose one of", names);
+  const CLI::App* command = nullptr;
+  std::string names;
+  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (sub->get_name() == argv[1]) command = sub;
+    names += " " + sub->get_name();
   }
+  if (command == nullptr) return dsns::message("there is no command '", argv[1], "': choose one of", names);
   for (int i = 2; i < argc; ++i) {
     const std::string word = argv[i], name = word.substr(0, word.find('='));
     if (word.rfind("--", 0) == 0 && word.size() > 2 && command->get_option_no_throw(name) == nullptr)
@@ -96,8 +101,8 @@ void check_output(const std::string& path, const std::string& extension) {
   const std::filesystem::path file(path), folder = file.has_parent_path() ? file.parent_path() : ".";
   dsns::require<dsns::FileError>(std::filesystem::is_directory(folder), "cannot write ", path, ": there is no folder ",
                                  folder.string(), "; make it first");
-  dsns::require<dsns::FileError>(extension.empty() || file.extension() == extension, "cannot write ", path, ": name it *",
-                                 extension);
+  dsns::require<dsns::FileError>(extension.empty() || file.extension() == extension, "cannot write ", path,
+                                 ": name it *", extension);
 }
 
 }  // namespace

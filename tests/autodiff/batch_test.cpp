@@ -17,21 +17,76 @@ using namespace dsns;
 namespace {
 
 // Every function, at arguments where it is smooth, at its special points and beside them.
-#define UNARY(name) [](const auto& x) { using std::name; return name(x); }
-const std::tuple functions{
-    UNARY(sin),   UNARY(cos),   UNARY(tan),  UNARY(exp),  UNARY(expm1), UNARY(exp2),  UNARY(log),     UNARY(log1p), UNARY(log2),
-    UNARY(log10), UNARY(sqrt),  UNARY(cbrt), UNARY(asin), UNARY(acos),  UNARY(atan),  UNARY(sinh),    UNARY(cosh),  UNARY(tanh),
-    UNARY(asinh), UNARY(acosh), UNARY(atanh), UNARY(erf), UNARY(abs),
-    [](const auto& x) { return softplus(x); }, [](const auto& x) { return sigmoid(x); }, [](const auto& x) { return silu(x); },
-    [](const auto& x) { return sqr(x); }, [](const auto& x) { using std::pow; return pow(x, 3); },
-    [](const auto& x) { using std::pow; return pow(x, 0.5); }, [](const auto& x) { using std::pow; return pow(2, x); },
-    [](const auto& x) { using std::pow; return pow(x, x); }, [](const auto& x) { using std::hypot; return hypot(x, 2 * x); },
-    [](const auto& x) { using std::atan2; return atan2(x, x - 1); }, [](const auto& x) { using std::min; return min(x, x * x); },
-    [](const auto& x) { using std::max; return max(x, x * x); }, [](const auto& x) { return 2 / x - x / 3 + (1 - x) * x; }};
+#define UNARY(name)   \
+  [](const auto& x) { \
+    using std::name;  \
+    return name(x);   \
+  }
+const std::tuple functions{UNARY(sin),
+                           UNARY(cos),
+                           UNARY(tan),
+                           UNARY(exp),
+                           UNARY(expm1),
+                           UNARY(exp2),
+                           UNARY(log),
+                           UNARY(log1p),
+                           UNARY(log2),
+                           UNARY(log10),
+                           UNARY(sqrt),
+                           UNARY(cbrt),
+                           UNARY(asin),
+                           UNARY(acos),
+                           UNARY(atan),
+                           UNARY(sinh),
+                           UNARY(cosh),
+                           UNARY(tanh),
+                           UNARY(asinh),
+                           UNARY(acosh),
+                           UNARY(atanh),
+                           UNARY(erf),
+                           UNARY(abs),
+                           [](const auto& x) { return softplus(x); },
+                           [](const auto& x) { return sigmoid(x); },
+                           [](const auto& x) { return silu(x); },
+                           [](const auto& x) { return sqr(x); },
+                           [](const auto& x) {
+                             using std::pow;
+                             return pow(x, 3);
+                           },
+                           [](const auto& x) {
+                             using std::pow;
+                             return pow(x, 0.5);
+                           },
+                           [](const auto& x) {
+                             using std::pow;
+                             return pow(2, x);
+                           },
+                           [](const auto& x) {
+                             using std::pow;
+                             return pow(x, x);
+                           },
+                           [](const auto& x) {
+                             using std::hypot;
+                             return hypot(x, 2 * x);
+                           },
+                           [](const auto& x) {
+                             using std::atan2;
+                             return atan2(x, x - 1);
+                           },
+                           [](const auto& x) {
+                             using std::min;
+                             return min(x, x * x);
+                           },
+                           [](const auto& x) {
+                             using std::max;
+                             return max(x, x * x);
+                           },
+                           [](const auto& x) { return 2 / x - x / 3 + (1 - x) * x; }};
 #undef UNARY
 
 bool same(double a, double b) {
-  return (std::isnan(a) && std::isnan(b)) || a == b || std::abs(a - b) <= 1e-14 * std::max({1.0, std::abs(a), std::abs(b)});
+  return (std::isnan(a) && std::isnan(b)) || a == b ||
+         std::abs(a - b) <= 1e-14 * std::max({1.0, std::abs(a), std::abs(b)});
 }
 
 template <int L, class Functions>
@@ -77,7 +132,8 @@ void compare(const Functions& all) {
 }  // namespace
 
 TEST_CASE("batch: every lane has the derivatives of a number", "[autodiff]") {
-  const std::tuple some{[](const auto& x) { return sin(x) * cos(x) / exp(x); }, [](const auto& x) { return log(x * x + 1); }};
+  const std::tuple some{[](const auto& x) { return sin(x) * cos(x) / exp(x); },
+                        [](const auto& x) { return log(x * x + 1); }};
   compare<2>(some);
   compare<4>(functions);
   compare<8>(some);

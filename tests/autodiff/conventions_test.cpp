@@ -82,7 +82,8 @@ void check(const std::string& name, const std::vector<Pair>& pairs, const F& f) 
 }  // namespace
 
 TEST_CASE("conventions: functions of one argument at their special points", "[autodiff]") {
-  check({{"abs", 0, {0, 0, 0}}, {"abs", -0.0, {0, 0, 0}}, {"abs", -3, {3, -1, 0}}}, [](const auto& x) { return abs(x); });
+  check({{"abs", 0, {0, 0, 0}}, {"abs", -0.0, {0, 0, 0}}, {"abs", -3, {3, -1, 0}}},
+        [](const auto& x) { return abs(x); });
   check({{"sqrt", 0, {0, inf, -inf}}}, [](const auto& x) { return sqrt(x); });
   check({{"cbrt", 0, {0, inf, -inf}}}, [](const auto& x) { return cbrt(x); });
   check({{"log", 0, {-inf, inf, -inf}}}, [](const auto& x) { return log(x); });
@@ -124,13 +125,22 @@ TEST_CASE("conventions: pow, hypot, atan2, min and max of two variables", "[auto
          {-2, 0.5, {nan, nan, nan, nan, nan, nan}},
          {2, 0, {1, 0, ln2, 0, 0.5, ln2 * ln2}}},
         [](const auto& x, const auto& y) { return pow(x, y); });
-  check("hypot", {{0, 0, {0, 0, 0, 0, 0, 0}}, {3, 0, {3, 1, 0, 0, 0, 1.0 / 3}}, {3, -4, {5, 0.6, -0.8, 0.128, 0.096, 0.072}}},
+  check("hypot",
+        {{0, 0, {0, 0, 0, 0, 0, 0}}, {3, 0, {3, 1, 0, 0, 0, 1.0 / 3}}, {3, -4, {5, 0.6, -0.8, 0.128, 0.096, 0.072}}},
         [](const auto& x, const auto& y) { return hypot(x, y); });
   check("atan2", {{0, 0, {0, 0, 0, 0, 0, 0}}, {0, -1, {pi, -1, 0, 0, -1, 0}}, {-0.0, -1, {-pi, -1, 0, 0, -1, 0}}},
         [](const auto& y, const auto& x) { return atan2(y, x); });
-  check("min", {{1, 1, {1, 1, 0, 0, 0, 0}}, {2, 1, {1, 0, 1, 0, 0, 0}}, {nan, 1, {nan, 1, 0, 0, 0, 0}}, {1, nan, {1, 1, 0, 0, 0, 0}}},
+  check("min",
+        {{1, 1, {1, 1, 0, 0, 0, 0}},
+         {2, 1, {1, 0, 1, 0, 0, 0}},
+         {nan, 1, {nan, 1, 0, 0, 0, 0}},
+         {1, nan, {1, 1, 0, 0, 0, 0}}},
         [](const auto& x, const auto& y) { return min(x, y); });
-  check("max", {{1, 1, {1, 1, 0, 0, 0, 0}}, {2, 1, {2, 1, 0, 0, 0, 0}}, {nan, 1, {nan, 1, 0, 0, 0, 0}}, {1, nan, {1, 1, 0, 0, 0, 0}}},
+  check("max",
+        {{1, 1, {1, 1, 0, 0, 0, 0}},
+         {2, 1, {2, 1, 0, 0, 0, 0}},
+         {nan, 1, {nan, 1, 0, 0, 0, 0}},
+         {1, nan, {1, 1, 0, 0, 0, 0}}},
         [](const auto& x, const auto& y) { return max(x, y); });
 }
 

@@ -35,9 +35,9 @@ TEST_CASE("preaccumulate: one to five arguments, the derivatives of the plain ta
   CHECK(tape.adjoint(x) == Approx(std::exp(0.3)));
   tape.backward(preaccumulate([](const auto& a, const auto& b) { return a * b; }, x, x));
   CHECK(tape.adjoint(x) == Approx(0.6));
-  tape.backward(
-      preaccumulate([](const auto& a, const auto& b, const auto& c, const auto& d, const auto& e) { return a * b * c * d * e; },
-                    x, y, z, y, y));
+  tape.backward(preaccumulate(
+      [](const auto& a, const auto& b, const auto& c, const auto& d, const auto& e) { return a * b * c * d * e; }, x, y,
+      z, y, y));
   CHECK(tape.adjoint(x) == Approx(-1.2 * -1.2 * -1.2 * 0.8));
   CHECK(tape.adjoint(y) == Approx(3 * 1.44 * 0.3 * 0.8));
 }

@@ -39,17 +39,20 @@ const auto curved = [](const auto& f) {
 };
 
 struct Network {
-  Matrix w1 = random_matrix(4, 3, 1), b1 = random_matrix(4, 1, 2), w2 = random_matrix(2, 4, 3), b2 = random_matrix(2, 1, 4);
+  Matrix w1 = random_matrix(4, 3, 1), b1 = random_matrix(4, 1, 2), w2 = random_matrix(2, 4, 3),
+         b2 = random_matrix(2, 1, 4);
   Matrix dw1 = Matrix::Zero(4, 3), db1 = Matrix::Zero(4, 1), dw2 = Matrix::Zero(2, 4), db2 = Matrix::Zero(2, 1);
 };
 
 using Node = MatrixTape<double>::Node;
 Node parameter(MatrixTape<double>& tape, const Matrix& value, Matrix& gradient) {
-  return tape.parameter({value.data(), value.rows(), value.cols()}, {gradient.data(), gradient.rows(), gradient.cols()});
+  return tape.parameter({value.data(), value.rows(), value.cols()},
+                        {gradient.data(), gradient.rows(), gradient.cols()});
 }
 
 Node loss(MatrixTape<double>& tape, Network& n, const Matrix& x) {
-  const Node h = jet_layer(tape, parameter(tape, n.w1, n.dw1), parameter(tape, n.b1, n.db1), tape.constant(x), tanh_jets);
+  const Node h =
+      jet_layer(tape, parameter(tape, n.w1, n.dw1), parameter(tape, n.b1, n.db1), tape.constant(x), tanh_jets);
   const Node y = jet_bias(tape, tape.product(parameter(tape, n.w2, n.dw2), h), parameter(tape, n.b2, n.db2));
   return tape.sum(pointwise<2, 6>(tape, tape.scale(y, 1.5), curved));
 }

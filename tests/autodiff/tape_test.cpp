@@ -179,8 +179,8 @@ TEST_CASE("tape: long sums of products cost no node a term, with any strides", "
   }
   const std::size_t before = tape.size();
   Var<double> s = 0.0;
-  for (int i = 0; i < n; ++i) s += x[std::size_t(i)] * y[std::size_t(2 * i + 1)];        // strides 1 and 2
-  for (int i = 0; i < n; ++i) s -= x[std::size_t(n - 1 - i)] * y[std::size_t(2 * i)];    // strides -1 and 2
+  for (int i = 0; i < n; ++i) s += x[std::size_t(i)] * y[std::size_t(2 * i + 1)];      // strides 1 and 2
+  for (int i = 0; i < n; ++i) s -= x[std::size_t(n - 1 - i)] * y[std::size_t(2 * i)];  // strides -1 and 2
   for (int i = 0; i < n; ++i) s += (1.0 + i) * x[std::size_t(i)];
   for (int i = 0; i < n; ++i) s += y[std::size_t(2 * i)];
   tape.backward(s);

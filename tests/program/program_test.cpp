@@ -75,6 +75,9 @@ TEST_CASE("unusable input ends with status 1 and one sentence", "[program]") {
   check_refused(run(folder.path(), "fit " + quoted(file("torus.glb"))), "genus");
   check_refused(run(folder.path(), "fit " + quoted(file("two.glb"))), "pieces");
   check_refused(run(folder.path(), "mean " + quoted(file("ball.glb")) + " " + quoted(file("torus.glb"))), "genus");
+  // Before the work, not after it.
+  check_refused(run(folder.path(), "fit " + quoted(file("ball.glb")) + " -o " + quoted(file("none") / "out.glb")), "folder");
+  check_refused(run(folder.path(), "fit " + quoted(file("ball.glb")) + " -o " + quoted(file("out.obj"))), ".glb");
 }
 
 TEST_CASE("wrong usage ends with status 2, help with 0", "[program]") {
@@ -87,6 +90,10 @@ TEST_CASE("wrong usage ends with status 2, help with 0", "[program]") {
     CHECK(r.status == 2);
     CHECK_FALSE(r.err.empty());
   }
+  // The words that are wrong are named.
+  CHECK(run(folder.path(), "inspct a.glb").err.find("'inspct'") != std::string::npos);
+  CHECK(run(folder.path(), "fit a.glb --step 10").err.find("--step") != std::string::npos);
+  CHECK(run(folder.path(), "mean a.glb b.glb --surface cubist").err.find("neural or sampled") != std::string::npos);
   CHECK(run(folder.path(), "--help").status == 0);
   CHECK(run(folder.path(), "mean --help").status == 0);
   CHECK(run(folder.path(), "--version").status == 0);

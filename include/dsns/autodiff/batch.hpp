@@ -165,9 +165,9 @@ DSNS_INLINE Batch<T, L> log(const Batch<T, L>& x) {
 }
 #undef DSNS_VECTOR_FUNCTION
 
-#define DSNS_LANE_BY_LANE(name)                                  \
-  template <class T, int L>                                      \
-  Batch<T, L> name(const Batch<T, L>& x) {                       \
+#define DSNS_LANE_BY_LANE(name)                                    \
+  template <class T, int L>                                        \
+  Batch<T, L> name(const Batch<T, L>& x) {                         \
     return Batch<T, L>::each([](T a) { return std::name(a); }, x); \
   }
 DSNS_LANE_BY_LANE(sqrt)

@@ -122,7 +122,7 @@ X pow(const X& x, const P& p) {
   using T = typename X::Inner;
   const auto& q = detail::constant<X>(p);
   return detail::singular_chain(x, T(detail::power(x.f, q)), T(detail::power_derivative(x.f, q)),
-               [&]() -> T { return detail::power_second(x.f, q); });
+                                [&]() -> T { return detail::power_second(x.f, q); });
 }
 
 template <Differentiable X, PassiveFor<X> P>
@@ -144,8 +144,7 @@ X pow(const X& x, const X& y) {
   const auto flat = value(x) == 0 && value(y) >= 0;
   const T l = select(flat, T(0), T(log(x.f)));
   return detail::singular_chain(x, y, f, detail::power_derivative(x.f, y.f), T(f * l), [&] {
-    const T mixed =
-        select(flat && value(y) > 1, T(0), T(detail::power(x.f, T(y.f - 1)) * (1 + y.f * T(log(x.f)))));
+    const T mixed = select(flat && value(y) > 1, T(0), T(detail::power(x.f, T(y.f - 1)) * (1 + y.f * T(log(x.f)))));
     return detail::Second<T>{detail::power_second(x.f, y.f), mixed, f * l * l};
   });
 }

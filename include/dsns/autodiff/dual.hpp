@@ -29,8 +29,9 @@ struct Dual {
       : f(static_cast<T>(s)), g(Tangents<T, N>::zero()) {}
   Dual(const T& f_, const Tangents<T, N>& g_) : f(f_), g(g_) {}
   template <class F, class G>
-  requires(std::is_same_v<std::remove_cvref_t<F>, T> && std::is_same_v<std::remove_cvref_t<G>, Tangents<T, N>>)
-      DSNS_INLINE Dual(F&& f_, G&& g_) : f(std::forward<F>(f_)), g(std::forward<G>(g_)) {}
+  requires(std::is_same_v<std::remove_cvref_t<F>, T>&& std::is_same_v<std::remove_cvref_t<G>, Tangents<T, N>>)
+      DSNS_INLINE Dual(F&& f_, G&& g_)
+      : f(std::forward<F>(f_)), g(std::forward<G>(g_)) {}
   /// The k-th independent variable: derivative 1 in direction k, 0 in the others.
   DSNS_INLINE static Dual variable(const T& x0, int k) { return Dual(x0, Tangents<T, N>::unit(k)); }
 

@@ -30,8 +30,8 @@ struct Jet2 {
       : f(static_cast<T>(s)), g(Tangents<T, N>::zero()), h(Tangents<T, packed>::zero()) {}
   Jet2(const T& f_, const Tangents<T, N>& g_, const Tangents<T, packed>& h_) : f(f_), g(g_), h(h_) {}
   template <class F, class G, class H>
-  requires(std::is_same_v<std::remove_cvref_t<F>, T> && std::is_same_v<std::remove_cvref_t<G>, Tangents<T, N>> &&
-           std::is_same_v<std::remove_cvref_t<H>, Tangents<T, packed>>) DSNS_INLINE Jet2(F&& f_, G&& g_, H&& h_)
+  requires(std::is_same_v<std::remove_cvref_t<F>, T>&& std::is_same_v<std::remove_cvref_t<G>, Tangents<T, N>>&&
+               std::is_same_v<std::remove_cvref_t<H>, Tangents<T, packed>>) DSNS_INLINE Jet2(F&& f_, G&& g_, H&& h_)
       : f(std::forward<F>(f_)), g(std::forward<G>(g_)), h(std::forward<H>(h_)) {}
   /// The k-th independent variable.
   DSNS_INLINE static Jet2 variable(const T& x0, int k) {

@@ -26,7 +26,8 @@ auto jet_block(M& x, int k) {
 
 template <class T>
 void check_jets(const char* function, const Eigen::Map<const Eigen::MatrixX<T>>& x) {
-  require(x.cols() % 6 == 0, function, ": ", x.cols(), " columns are not values and five derivatives of a number of points");
+  require(x.cols() % 6 == 0, function, ": ", x.cols(),
+          " columns are not values and five derivatives of a number of points");
 }
 
 }  // namespace detail
@@ -34,8 +35,9 @@ void check_jets(const char* function, const Eigen::Map<const Eigen::MatrixX<T>>&
 /// w(z), z = W x + b, with its derivatives in u and v. `function(z, slope, second, third)` works on arrays of values: it
 /// replaces z by w(z) and writes the derivatives of w.
 template <class T, class Function>
-typename MatrixTape<T>::Node jet_layer(MatrixTape<T>& tape, typename MatrixTape<T>::Node w, typename MatrixTape<T>::Node b,
-                                       typename MatrixTape<T>::Node x, const Function& function) {
+typename MatrixTape<T>::Node jet_layer(MatrixTape<T>& tape, typename MatrixTape<T>::Node w,
+                                       typename MatrixTape<T>::Node b, typename MatrixTape<T>::Node x,
+                                       const Function& function) {
   using Tape = MatrixTape<T>;
   const auto vw = tape.value(w), vb = tape.value(b), vx = tape.value(x);
   detail::check_jets<T>("jet_layer", vx);
@@ -78,7 +80,8 @@ typename MatrixTape<T>::Node jet_layer(MatrixTape<T>& tape, typename MatrixTape<
 
 /// The bias b, added to the values of jets.
 template <class T>
-typename MatrixTape<T>::Node jet_bias(MatrixTape<T>& tape, typename MatrixTape<T>::Node x, typename MatrixTape<T>::Node b) {
+typename MatrixTape<T>::Node jet_bias(MatrixTape<T>& tape, typename MatrixTape<T>::Node x,
+                                      typename MatrixTape<T>::Node b) {
   using Tape = MatrixTape<T>;
   const auto vx = tape.value(x), vb = tape.value(b);
   detail::check_jets<T>("jet_bias", vx);

@@ -130,8 +130,9 @@ struct Tangents : detail::TangentArray<T, N> {
   /// Few entries without a loop, which would keep them from registers.
   template <class Visit>
   DSNS_INLINE static void visit(const Visit& f) {
-    if constexpr (N <= 8)
-      [&]<std::size_t... i>(std::index_sequence<i...>) DSNS_INLINE_LAMBDA { (f(i), ...); }
+    if constexpr (N <= 8) [&]<std::size_t... i>(std::index_sequence<i...>) DSNS_INLINE_LAMBDA {
+        (f(i), ...);
+      }
     (std::make_index_sequence<std::size_t(N)>{});
     else for (std::size_t i = 0; i < N; ++i) f(i);
   }

@@ -34,7 +34,7 @@ namespace detail {
 /// What a variable is besides its value. Small enough to be passed in registers.
 struct VarTerms {
   // States, in the upper half of the tag; the lower is the recording.
-  static constexpr std::uint64_t exact = 0;                        // a constant, or recorded with this value
+  static constexpr std::uint64_t exact = 0;                         // a constant, or recorded with this value
   static constexpr std::uint64_t shifted = std::uint64_t(1) << 32;  // recorded but for a constant added since
   static constexpr std::uint64_t term = std::uint64_t(2) << 32;     // not recorded: a Term
   static constexpr std::uint64_t open = std::uint64_t(3) << 32;     // not recorded: a Run, to which terms may be added
@@ -292,7 +292,8 @@ struct Var {
   DSNS_INLINE void accumulate(const Terms& y, bool negative, const T& yf, const T& w) {
     if (y.state() == Terms::term && !(negative && Term{y.operands}.is_weighted())) {
       const Term term{negative ? y.operands ^ Term::negative : y.operands};
-      if (t_.tag != (y.tag | Terms::open) || !Tape<T>::is_active(y.tag - Terms::term) || !t_.run().extend(term)) [[unlikely]]
+      if (t_.tag != (y.tag | Terms::open) || !Tape<T>::is_active(y.tag - Terms::term) || !t_.run().extend(term))
+          [[unlikely]]
         t_ = opened(t_, y, term, f);
     } else if (!negative && !t_.is_constant() && exact_and_active(y)) {
       const Term term = Term::of(0, y.place(), Term::weighted);  // by the tape's constant 0, which is 1
@@ -470,7 +471,8 @@ class Tape {
 
   static inline std::atomic<std::uint32_t> last_recording_{2};
   static inline constinit thread_local Tape* active_ = nullptr;
-  static inline constinit thread_local std::uint64_t active_recording_ = 1;  // that on it; 1 is nobody's, 0 that of constants
+  static inline constinit thread_local std::uint64_t active_recording_ =
+      1;  // that on it; 1 is nobody's, 0 that of constants
 
   detail::TapeRecords<T> records_;
   std::uint32_t recording_ = 0;

@@ -169,7 +169,8 @@ class TapeRecords {
   }
 
   std::size_t bytes() const {
-    return size_ * (sizeof(Node) + 2 * sizeof(T)) + weight_count_ * sizeof(T) + run_count_ * sizeof(Run) + runs_.size() * sizeof(Run*);
+    return size_ * (sizeof(Node) + 2 * sizeof(T)) + weight_count_ * sizeof(T) + run_count_ * sizeof(Run) +
+           runs_.size() * sizeof(Run*);
   }
 
  private:
@@ -245,7 +246,7 @@ class TapeRecords {
   std::vector<T> values_;
   Place size_ = nowhere, capacity_ = 0;
   Place variables_ = nowhere;  // the places before this are independent variables
-  std::vector<T> weights_;  // weight_count_ in use
+  std::vector<T> weights_;     // weight_count_ in use
   Place weight_count_ = 0, weight_capacity_ = 0;
   std::vector<T> adjoints_;
   static constexpr std::size_t most = std::size_t(1) << 30;  // so that no place plus a stride is another kind of Term
