@@ -1,11 +1,15 @@
 // benchmark of differentiation: each method's time as a multiple of code written by hand, timed in turns in one process.
 //   autodiff [--json FILE] [--only METHOD]
+// and the compiler's seconds for one translation unit with the forward scalars of each library.
 #include "hand.hpp"
 #include "methods.hpp"
+
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <fstream>
@@ -162,6 +166,23 @@ Method by_hand() {
   return m;
 }
 
+/// User seconds of the compiler for a source in compiled/, the median of three; negative if it does not compile.
+double compile_seconds(const std::string& name) {
+  std::vector<double> times;
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    rusage before, after;
+    getrusage(RUSAGE_CHILDREN, &before);
+    const std::string command =
+        std::string(DSNS_COMPILE) + " -c -o /dev/null " DSNS_COMPILED_DIR "/" + name + " 2>/dev/null";
+    if (std::system(command.c_str()) != 0) return -1;
+    getrusage(RUSAGE_CHILDREN, &after);
+    const auto user = [](const rusage& r) { return double(r.ru_utime.tv_sec) + 1e-6 * double(r.ru_utime.tv_usec); };
+    times.push_back(user(after) - user(before));
+  }
+  std::sort(times.begin(), times.end());
+  return times[1];
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -202,6 +223,15 @@ int main(int argc, char** argv) {
       std::printf("%-40s %10.2f MB\n", m.name.c_str(), 1e-6 * bytes);
       results["MLP tape bytes"][m.name] = bytes;
     }
+
+  if (only.empty()) {
+    std::printf("\ncompiler's seconds for one translation unit\n");
+    for (const char* name : {"dsns_dual.cpp", "dsns_tape.cpp", "ceres_jet.cpp", "adolc_adouble.cpp"})
+      if (const double t = compile_seconds(name); t > 0) {
+        std::printf("%-40s %10.2f s\n", name, t);
+        results["compile seconds"][name] = t;
+      }
+  }
 
   if (json.empty()) return 0;
   std::ofstream file(json);

@@ -36,6 +36,12 @@ struct Mask {
   Vector m;  // 0 or -1
 
   bool operator[](int i) const { return m[i] != 0; }
+  template <std::same_as<bool> B>
+  explicit operator B() const {
+    static_assert(sizeof(B) == 0,
+                  "a batch is true in some lanes and false in others: use select(condition, a, b), any or all");
+    return false;
+  }
   friend Mask operator&&(const Mask& a, const Mask& b) { return {a.m & b.m}; }
   friend Mask operator||(const Mask& a, const Mask& b) { return {a.m | b.m}; }
   friend Mask operator!(const Mask& a) { return {~a.m}; }

@@ -136,6 +136,24 @@ using scalar_of = typename argument<std::tuple_element_t<0, std::tuple<W...>>>::
 
 }  // namespace detail
 
+namespace detail {
+
+/// What a driver got from the callable, as the number it must be.
+template <class V, class Y>
+V one_number(const Y& y) {
+  if constexpr (std::is_convertible_v<const Y&, V>) {
+    return y;
+  } else {
+    static_assert(sizeof(Y) == 0, "the function returns more than one number: use jacobian, or take one of them");
+  }
+}
+template <class Y>
+constexpr bool several_numbers = requires(const Y& y) {
+  y.reshaped();
+};
+
+}  // namespace detail
+
 /// Value and gradient of a scalar function by one reverse sweep.
 /// returns  value, and one derivative for each entry of wrt
 /// accuracy of the elementary functions [autodiff/gradient_test]
@@ -146,8 +164,8 @@ auto value_and_gradient(const F& f, const Wrt<W...>& wrt, const At<A...>& at) {
   Tape<T> tape;
   const auto recording = tape.record();
   std::vector<Var<T>> variables;
-  const Var<T> y = detail::call_lifted<Var<T>>(
-      f, wrt, at, [&](const T& x, Eigen::Index) { return variables.emplace_back(tape.variable(x)); });
+  const Var<T> y = detail::one_number<Var<T>>(detail::call_lifted<Var<T>>(
+      f, wrt, at, [&](const T& x, Eigen::Index) { return variables.emplace_back(tape.variable(x)); }));
   tape.backward(y);
   ValueAndGradient<T> result{y.f, Eigen::VectorX<T>(Eigen::Index(variables.size()))};
   for (std::size_t k = 0; k < variables.size(); ++k) result.gradient[Eigen::Index(k)] = tape.adjoint(variables[k]);
@@ -170,6 +188,8 @@ auto jacobian(const F& f, const Wrt<W...>& wrt, const At<A...>& at) {
   std::vector<Var<T>> variables;
   const auto y = detail::call_lifted<Var<T>>(
       f, wrt, at, [&](const T& x, Eigen::Index) { return variables.emplace_back(tape.variable(x)); });
+  static_assert(detail::several_numbers<std::decay_t<decltype(y)>>,
+                "jacobian: the function returns one number: use gradient");
   Eigen::MatrixX<T> J(y.size(), Eigen::Index(variables.size()));
   for (Eigen::Index i = 0; i < J.rows(); ++i) {
     tape.backward(Var<T>(y.reshaped()[i]));
@@ -190,9 +210,10 @@ auto hessian(const F& f, const Wrt<W...>& wrt, const At<A...>& at) {
   for (Eigen::Index j = 0; j < n; ++j) {
     const auto recording = tape.record();
     std::vector<Var<D>> variables;
-    const Var<D> y = detail::call_lifted<Var<D>>(f, wrt, at, [&](const D& x, Eigen::Index k) {
-      return variables.emplace_back(tape.variable(D(x.f, {T(k == j ? 1 : 0)})));
-    });
+    const Var<D> y =
+        detail::one_number<Var<D>>(detail::call_lifted<Var<D>>(f, wrt, at, [&](const D& x, Eigen::Index k) {
+          return variables.emplace_back(tape.variable(D(x.f, {T(k == j ? 1 : 0)})));
+        }));
     tape.backward(y);
     for (Eigen::Index i = 0; i < n; ++i) H(i, j) = tape.adjoint(variables[std::size_t(i)]).g[0];
   }
@@ -253,9 +274,9 @@ auto hvp(const F& f, const Wrt<W...>& wrt, const At<A...>& at, const Eigen::Matr
   Tape<D> tape;
   const auto recording = tape.record();
   std::vector<Var<D>> variables;
-  const Var<D> y = detail::call_lifted<Var<D>>(f, wrt, at, [&](const D& x, Eigen::Index k) {
+  const Var<D> y = detail::one_number<Var<D>>(detail::call_lifted<Var<D>>(f, wrt, at, [&](const D& x, Eigen::Index k) {
     return variables.emplace_back(tape.variable(D(x.f, {direction(k)})));
-  });
+  }));
   tape.backward(y);
   Eigen::VectorX<T> product{Eigen::Index(variables.size())};
   for (std::size_t k = 0; k < variables.size(); ++k) product[Eigen::Index(k)] = tape.adjoint(variables[k]).g[0];
