@@ -89,4 +89,33 @@ TEST_CASE("hessian: Rosenbrock's function against its closed form", "[autodiff]"
   CHECK(H(1, 1) == Approx(200));
 }
 
+TEST_CASE("jvp, vjp: products with the Jacobian, without forming it", "[autodiff]") {
+  const auto f = [](const auto& v, const auto& a) {
+    using V = std::decay_t<decltype(v[0] * a)>;
+    return Eigen::Matrix<V, 3, 1>(a * v[0] * v[1], sin(v[1]), v[0] / (1 + a * a));
+  };
+  const Eigen::Vector2d x(0.5, -1);
+  const double a = 2;
+  const Eigen::MatrixXd J = jacobian(f, wrt(x, a), at(x, a));
+  const Eigen::Vector3d direction(0.3, -0.2, 0.7), weights(1, -2, 0.5);
+  const auto along = jvp(f, wrt(x, a), at(x, a), direction);
+  CHECK(along.value.isApprox(Eigen::Vector3d(-1, std::sin(-1), 0.1), 1e-15));
+  CHECK(along.derivative.isApprox(J * direction, 1e-14));
+  CHECK(vjp(f, wrt(x, a), at(x, a), weights).isApprox(J.transpose() * weights, 1e-14));
+  CHECK(jvp([](const auto& v) { return v.squaredNorm(); }, wrt(x), at(x), Eigen::Vector2d(1, 1)).derivative == -1);
+  CHECK_THROWS_AS(jvp(f, wrt(x, a), at(x, a), x), InvalidArgument);
+  CHECK_THROWS_AS(vjp(f, wrt(x, a), at(x, a), x), InvalidArgument);
+}
+
+TEST_CASE("hvp, jet2: second derivatives along a direction and in two numbers", "[autodiff]") {
+  Eigen::VectorXd x(6), d(6);
+  x << 0.3, -0.7, 1.2, 0.9, -0.2, 0.5;
+  d << 1, 0.5, -2, 0, 0.3, -1;
+  const Eigen::MatrixXd H = hessian(rosenbrock, wrt(x), at(x));
+  CHECK(hvp(rosenbrock, wrt(x), at(x), d).isApprox(H * d, 1e-13));
+  CHECK_THROWS_AS(hvp(rosenbrock, wrt(x), at(x), d.head(2)), InvalidArgument);
+  const auto jet = jet2([](const auto& u, const auto& v) { return u * u * v; }, 3.0, 5.0);
+  CHECK((jet.f == 45 && jet.g[0] == 30 && jet.g[1] == 9 && jet.h[0] == 10 && jet.h[1] == 6 && jet.h[2] == 0));
+}
+
 }  // namespace gradient_test
