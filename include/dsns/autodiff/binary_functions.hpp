@@ -26,22 +26,29 @@ bool inert(const X& x) {
 /// a b, which is 0 for b = 0 also where a is not finite: a direction in which an argument stands still.
 template <class T>
 T times(const T& a, const T& b) {
-  return value(b) == 0 && inert(b) ? T(0) : T(a * b);
+  if (!inert(b)) return a * b;
+  return select(value(b) == 0, T(0), T(a * b));
+}
+
+/// Whether x, or every lane of it, is a number.
+template <class X>
+bool finite(const X& x) {
+  return everywhere(value(x) - value(x) == 0);
 }
 
 /// chain for functions whose derivatives may be infinite or undefined.
 template <class X, class T, class Second>
 DSNS_INLINE X singular_chain(const X& x, const T& w, const T& d, const Second& second) {
-  if constexpr (std::is_arithmetic_v<Passive<X>> && requires { careful_chain(x, w, d, second); }) {
-    if (!std::isfinite(value(d))) [[unlikely]]
+  if constexpr (requires { careful_chain(x, w, d, second); }) {
+    if (!finite(d)) [[unlikely]]
       return careful_chain(x, w, d, second);
   }
   return chain(x, w, d, second);
 }
 template <class X, class T, class Second>
 DSNS_INLINE X singular_chain(const X& x, const X& y, const T& w, const T& wx, const T& wy, const Second& second) {
-  if constexpr (std::is_arithmetic_v<Passive<X>> && requires { careful_chain(x, y, w, wx, wy, second); }) {
-    if (!std::isfinite(value(wx)) || !std::isfinite(value(wy)) || value(x) == 0) [[unlikely]]
+  if constexpr (requires { careful_chain(x, y, w, wx, wy, second); }) {
+    if (!finite(wx) || !finite(wy) || !everywhere(!(value(x) == 0))) [[unlikely]]
       return careful_chain(x, y, w, wx, wy, second);
   }
   return chain(x, y, w, wx, wy, second);
