@@ -317,6 +317,13 @@ TEST_CASE("tape: variables of an ended, replaced or foreign recording are refuse
       CHECK_THROWS_AS(x * y, InvalidArgument);
     }
     CHECK_NOTHROW(sin(x));  // the outer recording is active again
+    {
+      const auto once_more = tape.record();  // on the same tape: replaces the outer one
+      const auto z = tape.variable(7);
+      CHECK_NOTHROW(sin(z));
+    }
+    CHECK_THROWS_AS(sin(x), InvalidArgument);
+    CHECK_THROWS_AS(x * x + x, InvalidArgument);
   }
 }
 

@@ -32,7 +32,7 @@ int main() {
   double sum = 0;
   const std::size_t before = allocations;
   sum += everything(Dual<double, 3>::variable(0.7, 1)).g[1];
-  sum += everything(Dual<float, 7>::variable(0.7f, 1)).g[1];
+  sum += double(everything(Dual<float, 7>::variable(0.7f, 1)).g[1]);
   sum += everything(Jet2<double, 2>::variable(0.7, 0)).h[0];
   sum += everything(Jet2<double, 5>::variable(0.7, 4)).h[14];
   sum += everything(Dual<Dual<double, 2>, 2>::variable(Dual<double, 2>::variable(0.7, 0), 0)).g[0].g[0];

@@ -384,7 +384,9 @@ class Tape {
     }
     ~Recording() {
       active_ = previous_;
-      active_recording_ = previous_recording_;
+      // The outer recording may have been replaced by one on the same tape.
+      const bool replaced = previous_ != nullptr && previous_->recording_ != previous_recording_;
+      active_recording_ = replaced ? 1 : previous_recording_;
     }
     Recording(const Recording&) = delete;
     Recording& operator=(const Recording&) = delete;
