@@ -84,12 +84,11 @@ TEST_CASE("custom_vjp: a derivative written by hand, between recorded operations
   const auto a = tape.variable(0.5), b = tape.variable(2);
   const std::vector<Var<double>> x{a * b, sin(b), 3.0};  // a product not yet recorded, and a constant
   const std::vector<double> values{x[0].f * x[1].f, x[0].f + x[2].f};
-  const auto y = custom_vjp(std::span<const double>(values), std::span<const Var<double>>(x),
-                            [p = x[0].f, q = x[1].f](std::span<const double> back, std::span<double> out) {
-                              out[0] += q * back[0] + back[1];
-                              out[1] += p * back[0];
-                              out[2] += back[1];
-                            });
+  const auto y = custom_vjp(values, x, [p = x[0].f, q = x[1].f](std::span<const double> back, std::span<double> out) {
+    out[0] += q * back[0] + back[1];
+    out[1] += p * back[0];
+    out[2] += back[1];
+  });
   tape.backward(y[0] * y[1]);
   const auto dual = [](double a0, double b0, int k) {
     using D = Dual<double, 2>;
@@ -101,8 +100,8 @@ TEST_CASE("custom_vjp: a derivative written by hand, between recorded operations
   CHECK(tape.adjoint(b) == Approx(dual(0.5, 2, 1)).epsilon(1e-14));
 
   const std::vector<Var<double>> constants{1.0, 2.0};
-  const auto c = custom_vjp(std::span<const double>(values), std::span<const Var<double>>(constants),
-                            [](std::span<const double>, std::span<double>) { FAIL("nobody depends on it"); });
+  const auto c =
+      custom_vjp(values, constants, [](std::span<const double>, std::span<double>) { FAIL("nobody depends on it"); });
   CHECK(c[0].f == values[0]);
   tape.backward(c[0] + a);
   CHECK(tape.adjoint(a) == 1);

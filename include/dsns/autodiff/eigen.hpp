@@ -1,8 +1,8 @@
 #pragma once
 /// Eigen matrices of differentiable scalars, mixed freely with their passive scalars at every level of nesting.
 /// Products, sums, norms and element-wise functions differentiate; Eigen's decompositions do not (they branch on values
-/// and drop zero entries that carry derivatives): factor the values and differentiate implicitly. Where Eigen refuses a
-/// differentiable matrix times a passive vector of dynamic size, cast the vector: v.cast<X>().
+/// and drop zero entries that carry derivatives): use those of autodiff/linear_algebra.hpp. Where Eigen refuses the product of a
+/// passive and a differentiable matrix of dynamic sizes, cast the passive one: m.cast<X>().
 #include <dsns/autodiff/dual.hpp>
 #include <dsns/autodiff/jet2.hpp>
 

@@ -40,8 +40,8 @@ Var<T> preaccumulate(const F& f, const Var<T>& first, const X&... rest) {
 /// The results of a computation whose derivative is known: `pullback(results, operands)` reads the derivatives of the end
 /// result in `values` and adds those in x to `operands`.
 template <class T, class Pullback>
-std::vector<Var<T>> custom_vjp(std::span<const T> values, std::span<const Var<T>> x, Pullback pullback) {
-  return Tape<T>::function(x, values, std::move(pullback));
+std::vector<Var<T>> custom_vjp(const std::vector<T>& values, const std::vector<Var<T>>& x, Pullback pullback) {
+  return Tape<T>::function(std::span<const Var<T>>(x), std::span<const T>(values), std::move(pullback));
 }
 
 /// f(x), recorded only for its results: the backward sweep records it once more, on a tape of its own, and forgets it. A

@@ -1,6 +1,7 @@
 #pragma once
 /// What a differentiable scalar is: a value `f` of some inner type plus derivatives. Dual, Jet2 and Var are such
 /// scalars, and nest in one another; at the bottom lies an arithmetic type, the passive scalar.
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -98,3 +99,7 @@ constexpr decltype(auto) constant(const S& s) {
 
 }  // namespace detail
 }  // namespace dsns
+
+/// The limits of a scalar are those of the number at its bottom.
+template <dsns::Differentiable X>
+class std::numeric_limits<X> : public std::numeric_limits<dsns::Passive<X>> {};

@@ -34,10 +34,9 @@ namespace detail {
 /// What a variable is besides its value. Small enough to be passed in registers.
 struct VarTerms {
   // States, in the upper half of the tag; the lower is the recording.
-  static constexpr std::uint64_t exact = 0;                         // a constant, or recorded with this value
-  static constexpr std::uint64_t shifted = std::uint64_t(1) << 32;  // recorded but for a constant added since
-  static constexpr std::uint64_t term = std::uint64_t(2) << 32;     // not recorded: a Term
-  static constexpr std::uint64_t open = std::uint64_t(3) << 32;     // not recorded: a Run, to which terms may be added
+  static constexpr std::uint64_t exact = 0;                      // a constant, or recorded with this value
+  static constexpr std::uint64_t term = std::uint64_t(2) << 32;  // not recorded: a Term
+  static constexpr std::uint64_t open = std::uint64_t(3) << 32;  // not recorded: a Run, to which terms may be added
 
   std::uint64_t operands = 0;  // the place, the Term or the address of the Run
   std::uint64_t tag = 0;       // 0 is a constant
@@ -48,9 +47,8 @@ struct VarTerms {
   Run& run() const { return *reinterpret_cast<Run*>(operands); }
   bool is_constant() const { return tag == 0; }
   bool settled() const { return tag < term; }
-  void shift() {
-    if (tag != 0 && tag < shifted) tag += shifted;
-  }
+  /// The same place under a name of its own: a term with the tape's constant 0, which is 1.
+  VarTerms renamed() const { return {Term::of(0, place(), Term::weighted).bits, tag | term}; }
 };
 
 }  // namespace detail
@@ -241,8 +239,9 @@ struct Var {
   }
   /// The place of terms with value w, recorded now where they have none.
   [[gnu::noinline]] static std::uint32_t place_of(Terms t, Argument w) {
-    if (t.settled()) return t.place();
-    auto& tape = records(t);
+    return t.settled() ? t.place() : place_on(Tape<T>::alive(t.recording()), t, w);
+  }
+  static std::uint32_t place_on(detail::TapeRecords<T>& tape, const Terms& t, const T& w) {
     return t.state() == Terms::open ? tape.close_run(t.run(), w) : tape.push_term(0, Term{t.operands}, w);
   }
 
@@ -271,18 +270,8 @@ struct Var {
     return recorded(x.tag, records(x).push(x.place(), T(1), y.place(), T(negative ? -1 : 1), w));
   }
   [[gnu::noinline]] static Terms general_sum(Terms x, Terms y, bool negative, Argument xf, Argument yf, Argument w) {
-    if (y.is_constant()) {
-      x.shift();
-      return x;
-    }
-    if (x.is_constant()) {
-      if (negative) return scaled(y, yf, T(-1));
-      if constexpr (std::is_arithmetic_v<T>) {
-        if (w == yf) return y;
-      }
-      y.shift();
-      return y;
-    }
+    if (y.is_constant()) return shifted(x, xf);
+    if (x.is_constant()) return negative ? scaled(y, yf, T(-1)) : shifted(y, yf);
     check(x, y);
     const Linear a = linear(x, xf), b = linear(y, yf);
     return recorded(x.recording(), records(x).push(a.place, a.weight, b.place, negative ? T(-b.weight) : b.weight, w));
@@ -296,25 +285,37 @@ struct Var {
           [[unlikely]]
         t_ = opened(t_, y, term, f);
     } else if (!negative && !t_.is_constant() && exact_and_active(y)) {
-      const Term term = Term::of(0, y.place(), Term::weighted);  // by the tape's constant 0, which is 1
+      const Term term{y.renamed().operands};
       if (t_.tag != (y.tag | Terms::open) || !t_.run().extend(term)) t_ = opened(t_, y, term, f);
     } else {
       t_ = sum(t_, y, negative, f, yf, w);
     }
     f = w;
   }
-  /// A sum of x and the term y.
+  /// A sum of x and the term y, which does not continue x as it is.
   [[gnu::noinline]] static Terms opened(Terms x, Terms y, Term term, Argument xf) {
     check(x, y);
     auto& tape = records(y);
-    const std::uint32_t base = x.is_constant() ? 0 : place_of(x, xf);
-    return {reinterpret_cast<std::uint64_t>(&tape.open_run(base, term)), y.recording() | Terms::open};
+    detail::Run* run = nullptr;
+    if (x.state() == Terms::open) {
+      run = &tape.open_run(0, term, &x.run());
+    } else if (x.state() == Terms::term) {
+      run = &tape.open_run(0, Term{x.operands});
+      if (!run->extend(term)) run = &tape.open_run(0, term, run);
+    } else {
+      run = &tape.open_run(x.is_constant() ? 0 : place_of(x, xf), term);
+    }
+    return {reinterpret_cast<std::uint64_t>(run), y.recording() | Terms::open};
   }
 
+  /// The terms x of value w, to which a constant will have been added: a variable of its own.
+  DSNS_INLINE static Terms shifted(const Terms& x, const T& w) {
+    if (x.is_constant() || x.state() == Terms::term) return x;
+    return recorded(x.recording(), place_of(x, w)).renamed();
+  }
   DSNS_INLINE void shift(const T& w) {
-    close();
+    t_ = shifted(t_, f);
     f = w;
-    t_.shift();
   }
   DSNS_INLINE void negate() {
     if (t_.state() == Terms::term && !Term{t_.operands}.is_weighted())
@@ -378,12 +379,9 @@ class Tape {
   /// While it lives, this thread's operations on Var<T> go to its tape; afterwards to the tape that was active before.
   class [[nodiscard]] Recording {
    public:
-    explicit Recording(Tape& tape) : previous_(active_), previous_recording_(active_recording_) {
-      active_ = &tape;
-      active_recording_ = tape.recording_;
-    }
     ~Recording() {
       active_ = previous_;
+      top_ = below_;
       // The outer recording may have been replaced by one on the same tape.
       const bool replaced = previous_ != nullptr && previous_->recording_ != previous_recording_;
       active_recording_ = replaced ? 1 : previous_recording_;
@@ -392,8 +390,16 @@ class Tape {
     Recording& operator=(const Recording&) = delete;
 
    private:
+    friend class Tape;
+    explicit Recording(Tape& tape) : previous_(active_), previous_recording_(active_recording_), below_(top_) {
+      active_ = &tape;
+      active_recording_ = tape.recording_;
+      top_ = this;
+    }
+
     Tape* previous_;
     std::uint64_t previous_recording_;
+    Recording* below_;
   };
 
   /// Forgets the last recording, keeps its memory, and becomes the active tape of this thread.
@@ -404,16 +410,21 @@ class Tape {
     return Recording(*this);
   }
   /// An independent variable of this recording.
-  Var<T> variable(const T& w) { return Var<T>(w, Var<T>::recorded(recording_, records_.push_variable(w))); }
+  /// throws   InvalidArgument before the first recording
+  Var<T> variable(const T& w) {
+    if (recording_ == 0) [[unlikely]]
+      throw InvalidArgument("Tape::variable: there is no recording; keep what record() returns while you compute");
+    return Var<T>(w, Var<T>::recorded(recording_, records_.push_variable(w)));
+  }
 
   /// Derivatives of `seed * result` in everything recorded before it; replaces the adjoints of an earlier sweep.
   /// throws   InvalidArgument for a result of another recording
   void backward(const Var<T>& result, const T& seed = T(1)) {
-    result.settle();
     if (!result.t_.is_constant()) check(result);
+    if (!result.t_.settled()) result.t_ = Var<T>::recorded(recording_, Var<T>::place_on(records_, result.t_, result.f));
     records_.sweep(result.t_.place(), seed);
   }
-  /// The derivative of the last sweep's result in x; 0 for a constant.
+  /// The derivative of the last sweep's result in x; 0 for a constant, and for a product or sum of which nothing was made.
   /// throws   InvalidArgument for a variable of another recording, or recorded after the sweep
   T adjoint(const Var<T>& x) const {
     if (x.t_.is_constant()) return T(0);
@@ -463,6 +474,13 @@ class Tape {
   }
   /// Also false for whatever is not in the state `exact`.
   DSNS_INLINE static bool is_active(std::uint64_t recording) { return recording == active_recording_; }
+  /// That of any recording that lives on this thread, also beneath the active one: a variable may be copied there.
+  static detail::TapeRecords<T>& alive(std::uint64_t recording) {
+    if (is_active(recording)) return active_->records_;
+    for (const Recording* r = top_; r != nullptr; r = r->below_)
+      if (r->previous_ != nullptr && r->previous_->recording_ == recording) return r->previous_->records_;
+    inactive();
+  }
   [[noreturn, gnu::cold]] static void inactive() {
     throw InvalidArgument("Var: its recording is not the active one of this thread; it has ended or was replaced");
   }
@@ -473,6 +491,7 @@ class Tape {
 
   static inline std::atomic<std::uint32_t> last_recording_{2};
   static inline constinit thread_local Tape* active_ = nullptr;
+  static inline constinit thread_local Recording* top_ = nullptr;
   static inline constinit thread_local std::uint64_t active_recording_ =
       1;  // that on it; 1 is nobody's, 0 that of constants
 

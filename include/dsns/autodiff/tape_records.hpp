@@ -38,6 +38,7 @@ struct Run {
   std::uint64_t stride;  // from term to term, in the number's arithmetic; 0 while there is but one
   Term first;
   std::uint32_t base, place;  // 0: none; not recorded yet
+  Run* before;                // the sum's other terms, or null
 
   static constexpr std::uint64_t none = ~std::uint64_t(0);
 
@@ -83,6 +84,7 @@ class TapeRecords {
     run_count_ = 0;
     runs_.clear();
     functions_.clear();
+    adjoints_.clear();
     if (nodes_.empty()) grow();
   }
   std::size_t size() const { return size_ - nowhere; }
@@ -117,20 +119,25 @@ class TapeRecords {
   }
   const T& weight(Place k) const { return weights_[k]; }
 
-  /// The beginning of a sum of base (0: none) and terms. It stays where it is until clear().
-  Run& open_run(Place base, Term term) {
+  /// The beginning of a sum of base (0: none) and terms, or its continuation by terms that do not fit the run before. It
+  /// stays where it is until clear().
+  Run& open_run(Place base, Term term, Run* before = nullptr) {
     if (run_count_ == chunks_.size() * chunk) chunks_.push_back(std::make_unique<Run[]>(chunk));
     Run& r = chunks_[run_count_ / chunk][run_count_ % chunk];
     ++run_count_;
-    r = Run{Run::none, 0, term, base, 0};
+    r = Run{Run::none, 0, term, base, 0, before};
     return r;
   }
-  /// Records the sum, with value w.
-  Place close_run(Run& r, const T& w) {
-    if (r.stride == 0) return push_term(r.base, r.first, w);
-    const Place p = push(r.base, T(1), w);
-    r.place = p;
-    runs_.push_back(&r);
+  /// Records the sum, with value w: one place for all its runs.
+  Place close_run(Run& last, const T& w) {
+    if (last.stride == 0 && last.before == nullptr) return push_term(last.base, last.first, w);
+    const Run* first = &last;
+    while (first->before != nullptr) first = first->before;
+    const Place p = push(first->base, T(1), w);
+    for (Run* r = &last; r != nullptr; r = r->before) {
+      r->place = p;
+      runs_.push_back(r);
+    }
     return p;
   }
   /// base (0: none) plus a term.
@@ -161,7 +168,7 @@ class TapeRecords {
       const Place stop = std::max({sum, function, Place(variables_ - 1)});
       back_nodes(i, stop);
       if (stop < variables_) return;
-      if (stop == sum) back(*runs_[--r]);
+      while (r > 0 && runs_[r - 1]->place == stop) back(*runs_[--r]);
       if (stop == function) back(functions_[--f]);
       back_nodes(stop, stop - 1);
       i = stop - 1;

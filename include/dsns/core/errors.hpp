@@ -35,10 +35,17 @@ std::string message(const Parts&... parts) {
   return text.str();
 }
 
+/// Throws E with the concatenated parts.
+template <class E = InvalidArgument, class... Parts>
+[[noreturn]] void fail(const Parts&... parts) {
+  throw E(message(parts...));
+}
+
 /// Throws E with the concatenated parts unless the condition holds.
 template <class E = InvalidArgument, class... Parts>
-void require(bool condition, const Parts&... parts) {
-  if (!condition) throw E(message(parts...));
+inline void require(bool condition, const Parts&... parts) {
+  if (!condition) [[unlikely]]
+    fail<E>(parts...);
 }
 
 }  // namespace dsns
