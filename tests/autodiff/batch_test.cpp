@@ -44,6 +44,13 @@ const std::tuple functions{UNARY(sin),
                            UNARY(acosh),
                            UNARY(atanh),
                            UNARY(erf),
+                           UNARY(erfc),
+                           UNARY(floor),
+                           UNARY(ceil),
+                           UNARY(trunc),
+                           UNARY(round),
+                           UNARY(rint),
+                           UNARY(nearbyint),
                            UNARY(abs),
                            [](const auto& x) { return softplus(x); },
                            [](const auto& x) { return sigmoid(x); },
@@ -81,6 +88,10 @@ const std::tuple functions{UNARY(sin),
                              using std::max;
                              return max(x, x * x);
                            },
+                           [](const auto& x) { return fmin(x, x * x) + fdim(x, 0.2 * x * x) - fmax(x, 1 - x); },
+                           [](const auto& x) { return fmod(x, 0.6) + remainder(x, x * x + 0.3); },
+                           [](const auto& x) { return copysign(x, 1 - x) + fma(x, x, x); },
+                           [](const auto& x) { return hypot(x, 0.5, x * x); },
                            [](const auto& x) { return 2 / x - x / 3 + (1 - x) * x; }};
 #undef UNARY
 

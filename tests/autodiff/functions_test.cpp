@@ -263,6 +263,13 @@ TEST_CASE("functions: roots, squares and the error function have their closed de
       },
       {-1, 0, 0.5, 2});
   check_unary(
+      "erfc", [](const auto& x) { return erfc(x); },
+      [](Long x) {
+        const Long d = -2 / std::sqrt(std::numbers::pi_v<Long>) * std::exp(-x * x);
+        return Derivatives{std::erfc(x), d, -2 * x * d};
+      },
+      {-1, 0, 0.5, 4});
+  check_unary(
       "1 / x", [](const auto& x) { return 1 / x; },
       [](Long x) {
         return Derivatives{1 / x, -1 / (x * x), 2 / (x * x * x)};
@@ -302,6 +309,19 @@ TEST_CASE("functions: softplus, sigmoid and silu are exact in the tails", "[auto
     CHECK(y.g[0] == (x > 0 ? 1.0 : 0.0));
     CHECK(y.h[0] == 0.0);
   }
+}
+
+TEST_CASE("functions: rounding has no slope", "[autodiff]") {
+  const auto flat = [](const auto& rounded, const auto& standard) {
+    for (const double x : {-2.5, -1.2, -0.0, 0.5, 1.5, 3.0})
+      check_modes(rounded, x, Derivatives{Long(standard(x)), 0, 0}, 1);
+  };
+  flat([](const auto& x) { return floor(x); }, [](double x) { return std::floor(x); });
+  flat([](const auto& x) { return ceil(x); }, [](double x) { return std::ceil(x); });
+  flat([](const auto& x) { return trunc(x); }, [](double x) { return std::trunc(x); });
+  flat([](const auto& x) { return round(x); }, [](double x) { return std::round(x); });
+  flat([](const auto& x) { return rint(x); }, [](double x) { return std::rint(x); });
+  flat([](const auto& x) { return nearbyint(x); }, [](double x) { return std::nearbyint(x); });
 }
 
 TEST_CASE("functions: the written conventions where there is no derivative", "[autodiff]") {

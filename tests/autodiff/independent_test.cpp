@@ -68,19 +68,33 @@ TEST_CASE("independent: every function against the complex step and central diff
   REAL_FUNCTION(log1p){-0.5, 0.1, 4.0});
   REAL_FUNCTION(log2){0.05, 1.0, 30.0});
   REAL_FUNCTION(erf){-1.5, 0.1, 2.0});
+  REAL_FUNCTION(erfc){-1.5, 0.1, 2.0});
   REAL_FUNCTION(abs){-1.5, 2.0});
   check("softplus", [](const Differentiable auto& x) { return softplus(x); }, {-30.0, -0.4, 0.3, 30.0});
   check("sigmoid", [](const Differentiable auto& x) { return sigmoid(x); }, {-30.0, -0.4, 0.3, 30.0});
   check("silu", [](const Differentiable auto& x) { return silu(x); }, {-30.0, -0.4, 0.3, 30.0});
-  check("powers", [](const auto& x) { using std::pow; return pow(x, 3.5) + pow(1.7, x); }, {0.3, 2.0});
+  check("powers",
+        [](const auto& x) {
+          using std::pow;
+          return pow(x, 3.5) + pow(1.7, x);
+        },
+        {0.3, 2.0});
   check("x^x", [](const Differentiable auto& x) { return pow(x, x); }, {0.3, 2.0});
   check("hypot, atan2", [](const Differentiable auto& x) { return hypot(x, 2 - x) + atan2(x, 1 + x); }, {-0.3, 2.0});
-  check("a program", [](const auto& x) {
-    using std::exp, std::sin, std::sqrt;
-    auto y = sin(x) / (2.0 + x * x);
-    for (int i = 0; i < 5; ++i) y = exp(-y * x) - sqrt(1.0 + y * y) / 3.0;
-    return y;
-  }, {-0.2, 0.2, 2.0});
+  check("hypot of three", [](const Differentiable auto& x) { return hypot(x, 2 - x, x * x); }, {-0.3, 0.0, 2.0});
+  check("fma, fmod, remainder, fdim, copysign",
+        [](const Differentiable auto& x) {
+          return fma(x, x, sin(x)) + fmod(x * x, 0.7) - remainder(3.0, x) + fdim(x, exp(-x)) * copysign(x, -x);
+        },
+        {-0.3, 1.9});
+  check("a program",
+        [](const auto& x) {
+          using std::exp, std::sin, std::sqrt;
+          auto y = sin(x) / (2.0 + x * x);
+          for (int i = 0; i < 5; ++i) y = exp(-y * x) - sqrt(1.0 + y * y) / 3.0;
+          return y;
+        },
+        {-0.2, 0.2, 2.0});
 }
 
 }  // namespace independent_test

@@ -14,6 +14,7 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #if !defined(__GNUC__)
 #error "dsns/autodiff/batch.hpp needs the vector types of GCC or Clang; include it for no other compiler"
@@ -124,24 +125,44 @@ extern "C" {
 [[gnu::const]] Vector4d _ZGVdN4v_exp(Vector4d);
 [[gnu::const]] Vector4d _ZGVdN4v_log(Vector4d);
 }
-inline constexpr bool has_vector_functions = true;
-#define DSNS_VECTOR_FUNCTION(name) [](detail::Vector4d four) { return detail::_ZGVdN4v_##name(four); }
+#if defined(__AVX512F__)
+typedef double Vector8d __attribute__((vector_size(64)));
+extern "C" {
+[[gnu::const]] Vector8d _ZGVeN8v_sin(Vector8d);
+[[gnu::const]] Vector8d _ZGVeN8v_cos(Vector8d);
+[[gnu::const]] Vector8d _ZGVeN8v_exp(Vector8d);
+[[gnu::const]] Vector8d _ZGVeN8v_log(Vector8d);
+}
+#define DSNS_VECTOR_FUNCTION(name)       \
+  [](auto x) DSNS_INLINE_LAMBDA {        \
+    if constexpr (sizeof(x) == 64)       \
+      return detail::_ZGVeN8v_##name(x); \
+    else                                 \
+      return detail::_ZGVdN4v_##name(x); \
+  }
+inline constexpr int vector_function_lanes = 8;
 #else
-inline constexpr bool has_vector_functions = false;
+#define DSNS_VECTOR_FUNCTION(name) [](detail::Vector4d x) { return detail::_ZGVdN4v_##name(x); }
+inline constexpr int vector_function_lanes = 4;
+#endif
+#else
 #define DSNS_VECTOR_FUNCTION(name) 0
+inline constexpr int vector_function_lanes = 0;
 #endif
 
-/// A function of glibc's vector library four lanes at a time, or `scalar` lane by lane.
-template <class T, int L, class Four, class Scalar>
-DSNS_INLINE Batch<T, L> by_fours(const Batch<T, L>& x, [[maybe_unused]] const Four& four, const Scalar& scalar) {
-  if constexpr (has_vector_functions && std::is_same_v<T, double> && L % 4 == 0) {
+/// A function of glibc's vector library, as many lanes at a time as it takes, or `scalar` lane by lane.
+template <class T, int L, class Vectors, class Scalar>
+DSNS_INLINE Batch<T, L> by_vectors(const Batch<T, L>& x, [[maybe_unused]] const Vectors& vectors,
+                                   const Scalar& scalar) {
+  if constexpr (vector_function_lanes > 0 && std::is_same_v<T, double> && L % 4 == 0) {
+    constexpr int step = L < vector_function_lanes ? L : vector_function_lanes;
     Batch<T, L> r;
-    if constexpr (L == 4) {
-      r.v = four(x.v);
+    if constexpr (L == step) {
+      r.v = vectors(x.v);
     } else {
-      for (int i = 0; i < L; i += 4) {
-        auto part = Batch<T, 4>::load(reinterpret_cast<const T*>(&x.v) + i);
-        part.v = four(part.v);
+      for (int i = 0; i < L; i += step) {
+        auto part = Batch<T, step>::load(reinterpret_cast<const T*>(&x.v) + i);
+        part.v = vectors(part.v);
         part.store(reinterpret_cast<T*>(&r.v) + i);
       }
     }
@@ -155,19 +176,19 @@ DSNS_INLINE Batch<T, L> by_fours(const Batch<T, L>& x, [[maybe_unused]] const Fo
 
 template <class T, int L>
 DSNS_INLINE Batch<T, L> sin(const Batch<T, L>& x) {
-  return detail::by_fours(x, DSNS_VECTOR_FUNCTION(sin), [](T a) { return std::sin(a); });
+  return detail::by_vectors(x, DSNS_VECTOR_FUNCTION(sin), [](T a) { return std::sin(a); });
 }
 template <class T, int L>
 DSNS_INLINE Batch<T, L> cos(const Batch<T, L>& x) {
-  return detail::by_fours(x, DSNS_VECTOR_FUNCTION(cos), [](T a) { return std::cos(a); });
+  return detail::by_vectors(x, DSNS_VECTOR_FUNCTION(cos), [](T a) { return std::cos(a); });
 }
 template <class T, int L>
 DSNS_INLINE Batch<T, L> exp(const Batch<T, L>& x) {
-  return detail::by_fours(x, DSNS_VECTOR_FUNCTION(exp), [](T a) { return std::exp(a); });
+  return detail::by_vectors(x, DSNS_VECTOR_FUNCTION(exp), [](T a) { return std::exp(a); });
 }
 template <class T, int L>
 DSNS_INLINE Batch<T, L> log(const Batch<T, L>& x) {
-  return detail::by_fours(x, DSNS_VECTOR_FUNCTION(log), [](T a) { return std::log(a); });
+  return detail::by_vectors(x, DSNS_VECTOR_FUNCTION(log), [](T a) { return std::log(a); });
 }
 #undef DSNS_VECTOR_FUNCTION
 
@@ -194,23 +215,34 @@ DSNS_LANE_BY_LANE(asinh)
 DSNS_LANE_BY_LANE(acosh)
 DSNS_LANE_BY_LANE(atanh)
 DSNS_LANE_BY_LANE(erf)
+DSNS_LANE_BY_LANE(erfc)
+DSNS_LANE_BY_LANE(floor)
+DSNS_LANE_BY_LANE(ceil)
+DSNS_LANE_BY_LANE(trunc)
+DSNS_LANE_BY_LANE(round)
+DSNS_LANE_BY_LANE(rint)
+DSNS_LANE_BY_LANE(nearbyint)
 #undef DSNS_LANE_BY_LANE
 
 template <class T, int L>
 Batch<T, L> abs(const Batch<T, L>& x) {
   return select(x < 0, -x, x);
 }
+#define DSNS_PAIR_BY_PAIR(name)                                               \
+  template <class T, int L>                                                   \
+  Batch<T, L> name(const Batch<T, L>& x, const Batch<T, L>& y) {              \
+    return Batch<T, L>::each([](T a, T b) { return std::name(a, b); }, x, y); \
+  }
+DSNS_PAIR_BY_PAIR(pow)
+DSNS_PAIR_BY_PAIR(hypot)
+DSNS_PAIR_BY_PAIR(atan2)
+DSNS_PAIR_BY_PAIR(copysign)
+DSNS_PAIR_BY_PAIR(fmod)
+DSNS_PAIR_BY_PAIR(remainder)
+#undef DSNS_PAIR_BY_PAIR
 template <class T, int L>
-Batch<T, L> pow(const Batch<T, L>& x, const Batch<T, L>& y) {
-  return Batch<T, L>::each([](T a, T b) { return std::pow(a, b); }, x, y);
-}
-template <class T, int L>
-Batch<T, L> hypot(const Batch<T, L>& x, const Batch<T, L>& y) {
-  return Batch<T, L>::each([](T a, T b) { return std::hypot(a, b); }, x, y);
-}
-template <class T, int L>
-Batch<T, L> atan2(const Batch<T, L>& y, const Batch<T, L>& x) {
-  return Batch<T, L>::each([](T a, T b) { return std::atan2(a, b); }, y, x);
+Batch<T, L> fma(const Batch<T, L>& x, const Batch<T, L>& y, const Batch<T, L>& z) {
+  return Batch<T, L>::each([](T a, T b, T c) { return std::fma(a, b, c); }, x, y, z);
 }
 template <class T, int L>
 Batch<T, L> sigmoid(const Batch<T, L>& x) {
@@ -231,3 +263,6 @@ Batch<T, L> sqr(const Batch<T, L>& x) {
 }
 
 }  // namespace dsns
+
+template <class T, int L>
+class std::numeric_limits<dsns::Batch<T, L>> : public std::numeric_limits<T> {};

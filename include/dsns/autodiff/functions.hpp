@@ -267,6 +267,28 @@ DSNS_INLINE X erf(const X& x) {
 }
 
 template <Differentiable X>
+DSNS_INLINE X erfc(const X& x) {
+  using std::erfc, std::exp;
+  const auto d = Passive<X>(-1.128379167095512573896158903121545172L) * exp(-x.f * x.f);
+  return chain(x, erfc(x.f), d, [&] { return -2 * x.f * d; });
+}
+
+/// Rounding: derivative 0, also at the jumps.
+#define DSNS_ROUNDING(name)               \
+  template <Differentiable X>             \
+  DSNS_INLINE X name(const X& x) {        \
+    using std::name;                      \
+    return X(Passive<X>(name(value(x)))); \
+  }
+DSNS_ROUNDING(floor)
+DSNS_ROUNDING(ceil)
+DSNS_ROUNDING(trunc)
+DSNS_ROUNDING(round)
+DSNS_ROUNDING(rint)
+DSNS_ROUNDING(nearbyint)
+#undef DSNS_ROUNDING
+
+template <Differentiable X>
 DSNS_INLINE X sigmoid(const X& x) {
   const auto f = sigmoid(x.f);
   const auto rest = sigmoid(-x.f);  // 1 - f without cancellation
