@@ -1,4 +1,5 @@
 #include "catch.hpp"
+#include "support/matrices.hpp"
 
 #include <dsns/autodiff/jet2.hpp>
 #include <dsns/autodiff/matrix_jets.hpp>
@@ -6,22 +7,14 @@
 
 #include <array>
 #include <cmath>
-#include <random>
 
 namespace matrix_jets_test {
 
 using namespace dsns;
+using test::random_matrix;
 using Matrix = Eigen::MatrixXd;
 
 namespace {
-
-Matrix random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  Matrix m(rows, cols);
-  for (double& x : m.reshaped()) x = uniform(random);
-  return m;
-}
 
 const auto tanh_jets = [](auto z, auto slope, auto second, auto third) {
   z = z.tanh();

@@ -1,28 +1,23 @@
 #include "catch.hpp"
+#include "support/matrices.hpp"
 
 #include <dsns/autodiff/dual.hpp>
 #include <dsns/autodiff/matrix.hpp>
 #include <dsns/autodiff/tape.hpp>
 
 #include <cmath>
-#include <random>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 namespace matrix_test {
 
 using namespace dsns;
+using test::random_matrix;
 
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-
-Matrix random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  Matrix m(rows, cols);
-  for (double& x : m.reshaped()) x = uniform(random);
-  return m;
-}
 
 const auto tanh_entries = [](Eigen::Index n, auto* y, auto* slope) {
   using std::tanh;
@@ -179,6 +174,127 @@ TEST_CASE("matrix tape: adjoints of inner nodes, and of nodes the result does no
   CHECK(tape.adjoint(unused).isZero());
   CHECK(tape.adjoint(x).isZero());  // constants take no part
   CHECK(dw.isApprox(2 * tape.value(y) * tape.value(x).transpose(), 1e-14));
+}
+
+namespace {
+
+/// Scalars, a product of matrices of them, scalars made of its entries, and another product; `product` takes two
+/// matrices, given column by column, and returns one.
+template <class V, class Product>
+V there_and_back(const std::vector<V>& x, const Product& product) {
+  const V a = sin(x[0]) * x[1];
+  const std::vector<V> left{a, x[1], x[2] * x[0], exp(x[3]), 2.0, a + x[4]};
+  const std::vector<V> first = product(2, 3, 2, left, std::vector<V>{x[0], x[1], x[2], x[3], x[4], x[5]});
+  const V b = log(1 + first[0] * first[0]) + a;
+  const std::vector<V> second = product(2, 2, 2, first, std::vector<V>{b, first[3], x[5], b * x[0]});
+  V sum = x[1] * b;
+  for (const V& y : second) sum += y * cos(y);
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("matrix tape: matrices and scalars on one tape, in one sweep", "[autodiff]") {
+  const auto check = [](const auto& start) {
+    using T = std::decay_t<decltype(start)>;
+    using V = Var<T>;
+    const auto values = [&](int k) { return T(0.3 + 0.2 * k) * start; };
+    Tape<T> plain, tape;
+    MatrixTape<T> matrices(tape);
+    std::vector<T> expected;
+    {
+      const auto recording = plain.record();
+      std::vector<V> x;
+      for (int k = 0; k < 6; ++k) x.push_back(plain.variable(values(k)));
+      plain.backward(there_and_back(x, [](int rows, int inner, int cols, const auto& a, const auto& b) {
+        std::vector<V> r(std::size_t(rows * cols), V(0));
+        for (int j = 0; j < cols; ++j)
+          for (int i = 0; i < rows; ++i)
+            for (int k = 0; k < inner; ++k)
+              r[std::size_t(j * rows + i)] += a[std::size_t(k * rows + i)] * b[std::size_t(j * inner + k)];
+        return r;
+      }));
+      for (const V& v : x) expected.push_back(plain.adjoint(v));
+    }
+    for (int round = 0; round < 2; ++round) {  // a recording forgets the nodes of the one before
+      const auto recording = tape.record();
+      std::vector<V> x;
+      for (int k = 0; k < 6; ++k) x.push_back(tape.variable(values(k)));
+      const V y = there_and_back(x, [&](int rows, int inner, int cols, const auto& a, const auto& b) {
+        return matrices.entries(matrices.product(matrices.matrix(rows, inner, a), matrices.matrix(inner, cols, b)));
+      });
+      for (const double seed : {1.0, 2.0}) {  // a sweep replaces the one before
+        tape.backward(y, T(seed));
+        for (std::size_t k = 0; k < 6; ++k) {
+          const T found = tape.adjoint(x[k]), wanted = seed * expected[k];
+          CHECK(value(found) == Approx(value(wanted)).epsilon(1e-13));
+          if constexpr (Differentiable<T>) CHECK(found.g[0] == Approx(wanted.g[0]).epsilon(1e-12));
+        }
+      }
+    }
+  };
+  check(1.0);
+  check(Dual<double, 1>::variable(1, 0));
+}
+
+TEST_CASE("matrix tape: parameters of a network inside a computation with scalars", "[autodiff]") {
+  const Matrix x = random_matrix(3, 5, 14), target = random_matrix(4, 5, 15);
+  Parameters<double> alone, beside;
+  MatrixTape<double> matrices;
+  const auto e = network(matrices, alone, x, target, true);
+  const double error = matrices.value(e)(0, 0), factor = 3 / (1 + error);
+  matrices.backward(e, factor);  // of 3 log(1 + error)
+
+  Tape<double> tape;
+  MatrixTape<double> on_tape(tape);
+  const auto recording = tape.record();
+  const auto three = tape.variable(3);
+  const auto node = network(on_tape, beside, x, target, true);
+  const auto loss = three * log(1 + on_tape.entries(node)[0]);
+  CHECK(loss.f == Approx(3 * std::log(1 + error)));
+  tape.backward(loss);
+  CHECK(tape.adjoint(three) == Approx(std::log(1 + error)));
+  CHECK(beside.dw1.isApprox(alone.dw1, 1e-13));
+  CHECK(beside.dw2.isApprox(alone.dw2, 1e-13));
+  CHECK(beside.db.isApprox(alone.db, 1e-13));
+  CHECK(on_tape.adjoint(node)(0, 0) == Approx(factor));
+  beside.clear();
+  on_tape.backward(node, factor);
+  CHECK(beside.dw2.isApprox(alone.dw2, 1e-13));
+  const auto constant = on_tape.entries(on_tape.constant(x));
+  tape.backward(constant[3] * three);
+  CHECK(tape.adjoint(three) == x(0, 1));
+  CHECK(on_tape.adjoint(node).isZero());
+}
+
+TEST_CASE("matrix tape: what cannot be on one tape is refused", "[autodiff]") {
+  const auto message = [](const auto& wrong) -> std::string {
+    try {
+      wrong();
+    } catch (const InvalidArgument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  Tape<double> tape, other;
+  MatrixTape<double> alone, matrices(tape);
+  CHECK(message([&] { matrices.constant(Matrix::Zero(1, 1)); }).find("recording") != std::string::npos);
+  const auto recording = tape.record();
+  const std::vector<Var<double>> x{tape.variable(1), tape.variable(2)};
+  CHECK(message([&] { alone.matrix(1, 2, x); }).find("MatrixTape(tape)") != std::string::npos);
+  CHECK(message([&] { matrices.matrix(2, 2, x); }) == "MatrixTape::matrix: 2 scalars for 2 x 2 entries");
+  {
+    const auto inner = other.record();
+    CHECK(message([&] { matrices.matrix(1, 2, x); }).find("active") != std::string::npos);
+    MatrixTape<double> on_other(other);
+    CHECK(message([&] { on_other.matrix(1, 2, x); }).find("active") != std::string::npos);
+  }
+  Var<double> y;
+  {
+    MatrixTape<double> short_lived(tape);
+    y = short_lived.entries(short_lived.matrix(1, 2, x))[0];
+  }
+  CHECK(message([&] { tape.backward(y); }).find("MatrixTape on it has ended") != std::string::npos);
 }
 
 TEST_CASE("matrix tape: shapes that do not fit are named", "[autodiff]") {

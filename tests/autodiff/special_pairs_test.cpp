@@ -119,7 +119,7 @@ void check_pairs(const std::string& name, const F& f, const Closed& closed, bool
         if (l) {
           INFO("limit " << double(*l));
           ++limits;
-          CHECK(near_to(found[k], *l));
+          CHECK(near_to(Long(found[k]), *l));
         } else if (k < 3) {
           const double wanted = k == 1 ? expected.x : expected.y;
           INFO("convention " << wanted);

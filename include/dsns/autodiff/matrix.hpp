@@ -10,13 +10,24 @@
 /// Parameters are views of the caller's memory. A tape keeps its memory from one recording to the next: a step of the
 /// same shapes as the last allocates nothing. T may be float, double, or a forward scalar. One tape serves one thread.
 /// Operations of one's own: MatrixTape::operation, as used in autodiff/matrix_jets.hpp.
+///
+/// Beside scalars, on one tape with them:
+///
+///   Tape<double> tape;
+///   const auto recording = tape.record();
+///   MatrixTape<double> matrices(tape);
+///   const auto y = matrices.product(matrices.parameter(W, dW), matrices.matrix(3, 1, variables));
+///   tape.backward(log(matrices.entries(y)[0]));      // one sweep through both
 #include <dsns/autodiff/eigen.hpp>
+#include <dsns/autodiff/tape.hpp>
 #include <dsns/core/errors.hpp>
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace dsns {
@@ -27,6 +38,13 @@ class MatrixTape {
   using Matrix = Eigen::MatrixX<T>;
   using Value = Eigen::Map<const Matrix>;
   using Gradient = Eigen::Map<Matrix>;
+
+  MatrixTape() = default;
+  /// Nodes on a tape of scalars, recorded and swept with its variables. They are forgotten when it records anew. Must live
+  /// as long as the scalar tape is swept.
+  explicit MatrixTape(Tape<T>& scalars) : scalars_(&scalars) {}
+  MatrixTape(const MatrixTape&) = delete;
+  MatrixTape& operator=(const MatrixTape&) = delete;
 
   /// A place on the tape, valid until clear().
   struct Node {
@@ -47,8 +65,8 @@ class MatrixTape {
    private:
     friend class MatrixTape;
     Pullback pullback = nullptr;
-    bool active = false;   // depends on a parameter
-    bool reached = false;  // adjoint holds something
+    bool active = false;      // depends on a parameter
+    std::size_t reached = never;  // the sweep in which adjoint got what it holds
     const T* parameter = nullptr;
     T* gradient = nullptr;
     Eigen::Index rows = 0, cols = 0;  // of a parameter
@@ -60,6 +78,11 @@ class MatrixTape {
   /// Records an operation with a result of the given shape, which the caller writes to `value`; `last()` is its node.
   /// The reference stays valid until clear().
   Operation& operation(Eigen::Index rows, Eigen::Index cols, std::initializer_list<Node> operands, Pullback pullback) {
+    if (scalars_ != nullptr) {
+      scalars_->check_active();
+      if (recording_ != scalars_->recording()) clear();
+      recording_ = scalars_->recording();
+    }
     bool active = false;
     if (used_ == operations_.size()) operations_.push_back(std::make_unique<Operation>());
     Operation& o = *operations_[used_];
@@ -71,9 +94,14 @@ class MatrixTape {
     ++used_;
     o.pullback = pullback;
     o.active = active;
-    o.reached = false;
+    o.reached = never;
     o.parameter = nullptr;
     o.value.resize(rows, cols);
+    if (scalars_ != nullptr && active && pullback != nullptr)
+      scalars_->external({}, [this, k = used_ - 1, owner = std::weak_ptr<void>(life_)](std::span<const T>) {
+        check_alive(owner);
+        pull(k);
+      });
     return o;
   }
   Node last() const { return {used_ - 1}; }
@@ -98,6 +126,41 @@ class MatrixTape {
     o.cols = value.cols();
     o.active = true;
     return last();
+  }
+
+  /// A matrix of scalars, column by column.
+  /// throws   InvalidArgument unless this tape was made on the scalars', or for another number of them
+  Node matrix(Eigen::Index rows, Eigen::Index cols, std::span<const Var<T>> scalars) {
+    check_on_scalars("matrix");
+    require(rows * cols == Eigen::Index(scalars.size()), "MatrixTape::matrix: ", scalars.size(), " scalars for ", rows,
+            " x ", cols, " entries");
+    Operation& o = operation(rows, cols, {}, nullptr);
+    for (std::size_t k = 0; k < scalars.size(); ++k) {
+      o.value.data()[k] = scalars[k].f;
+      o.active = o.active || !derivatives_vanish(scalars[k]);
+    }
+    const T none(0);
+    Tape<T>::function(scalars, std::span<const T>(&none, 1),
+                      [this, node = last(), owner = std::weak_ptr<void>(life_)](auto, std::span<T> derivatives) {
+                        check_alive(owner);
+                        const Operation& m = *operations_[node.place];
+                        if (m.reached != sweep()) return;
+                        for (std::size_t k = 0; k < derivatives.size(); ++k) derivatives[k] += m.adjoint.data()[k];
+                      });
+    return last();
+  }
+  /// The entries of a matrix as scalars, column by column; constants if it depends on none and on no parameter.
+  /// throws   InvalidArgument unless this tape was made on a tape of scalars
+  std::vector<Var<T>> entries(Node node) {
+    check_on_scalars("entries");
+    const Value v = value(node);
+    const std::span<const T> values(v.data(), std::size_t(v.size()));
+    if (!is_active(node)) return {values.begin(), values.end()};
+    return scalars_->external(values, [this, node, owner = std::weak_ptr<void>(life_)](std::span<const T> derivatives) {
+      check_alive(owner);
+      const Value x = value(node);
+      accumulate(node, Value(derivatives.data(), x.rows(), x.cols()));
+    });
   }
 
   /// a b
@@ -188,10 +251,12 @@ class MatrixTape {
     return o.parameter != nullptr ? Value(o.parameter, o.rows, o.cols)
                                   : Value(o.value.data(), o.value.rows(), o.value.cols());
   }
-  /// The derivative of the last sweep's result in this node, zero where it does not depend on it.
+  /// The derivative of the last sweep's result in this node, zero where it does not depend on it; of a parameter, what its
+  /// gradient holds.
   Matrix adjoint(Node node) const {
     const Operation& o = *operations_[node.place];
-    return o.reached ? o.adjoint : Matrix::Zero(value(node).rows(), value(node).cols());
+    if (o.parameter != nullptr) return Gradient(o.gradient, o.rows, o.cols);
+    return o.reached == sweep() ? o.adjoint : Matrix::Zero(value(node).rows(), value(node).cols());
   }
 
   /// Whether a pullback need care for this operand.
@@ -205,11 +270,11 @@ class MatrixTape {
     if (!o.active) return;
     if (o.parameter != nullptr)
       Gradient(o.gradient, o.rows, o.cols).noalias() += contribution;
-    else if (o.reached)
+    else if (o.reached == sweep())
       o.adjoint.noalias() += contribution;
     else
       o.adjoint.noalias() = contribution;
-    o.reached = true;
+    o.reached = sweep();
   }
 
   /// Adds `seed` times the derivatives of a 1 x 1 node to the gradients of all parameters.
@@ -217,13 +282,12 @@ class MatrixTape {
   void backward(Node result, const T& seed = T(1)) {
     require(value(result).size() == 1, "MatrixTape::backward: the result has ", value(result).size(),
             " entries; differentiate one number");
-    for (std::size_t k = 0; k < used_; ++k) operations_[k]->reached = false;
     if (!is_active(result)) return;
+    if (scalars_ != nullptr) return scalars_->backward(entries(result)[0], seed);
+    ++sweep_;
     accumulate(result, Matrix::Constant(1, 1, seed));
-    for (std::size_t k = result.place + 1; k-- > 0;) {
-      const Operation& o = *operations_[k];
-      if (o.reached && o.pullback != nullptr) o.pullback(*this, o);
-    }
+    for (std::size_t k = result.place + 1; k-- > 0;)
+      if (operations_[k]->pullback != nullptr) pull(k);
   }
 
   /// For pullbacks: a matrix to work in, of no particular shape.
@@ -270,9 +334,29 @@ class MatrixTape {
     return last();
   }
 
+  static constexpr std::size_t never = ~std::size_t(0);
+
+  void pull(std::size_t k) {
+    const Operation& o = *operations_[k];
+    if (o.reached == sweep()) o.pullback(*this, o);
+  }
+  /// The number of the last sweep.
+  std::size_t sweep() const { return scalars_ != nullptr ? scalars_->sweeps() : sweep_; }
+  void check_on_scalars(const char* function) const {
+    require(scalars_ != nullptr, "MatrixTape::", function, ": make the tape on that of the scalars, MatrixTape(tape)");
+  }
+  static void check_alive(const std::weak_ptr<void>& owner) {
+    require(!owner.expired(),
+            "Tape::backward: a MatrixTape on it has ended; it must live as long as the tape is swept");
+  }
+
   Matrix scratch_;
   std::vector<std::unique_ptr<Operation>> operations_;
   std::size_t used_ = 0;
+  std::size_t sweep_ = 0;
+  Tape<T>* scalars_ = nullptr;
+  std::uint64_t recording_ = 0;
+  std::shared_ptr<void> life_ = std::make_shared<char>();
 };
 
 }  // namespace dsns

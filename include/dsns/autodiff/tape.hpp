@@ -79,6 +79,7 @@ class Tape {
   void backward(const Var<T>& result, const T& seed = T(1)) {
     if (!result.t_.is_constant()) check(result);
     if (!result.t_.settled()) result.t_ = Var<T>::recorded(recording_, Var<T>::place_on(records_, result.t_, result.f));
+    ++sweeps_;
     records_.sweep(result.t_.place(), seed);
   }
   /// The derivative of the last sweep's result in x; 0 for a constant, and for a product or sum of which nothing was made.
@@ -109,13 +110,29 @@ class Tape {
       places.push_back(x.t_.place());
     }
     if (recording == 0) return {results.begin(), results.end()};
-    const std::uint32_t first = active(recording).push_function(std::move(places), results, std::move(pullback));
-    std::vector<Var<T>> out;
-    out.reserve(results.size());
-    for (std::size_t k = 0; k < results.size(); ++k)
-      out.push_back(Var<T>(results[k], Var<T>::recorded(recording, first + static_cast<std::uint32_t>(k))));
-    return out;
+    return active_->variables(active(recording).push_function(std::move(places), results, std::move(pullback)),
+                              results);
   }
+  /// Results of something that is not on the tape, such as a matrix of a MatrixTape, as variables of this recording. The
+  /// sweep calls `back` with the derivatives in them, after it has done with all that was recorded later; without results
+  /// it is a step of the sweep and nothing else.
+  /// throws   InvalidArgument unless the recording is the active one of this thread
+  std::vector<Var<T>> external(std::span<const T> results, std::function<void(std::span<const T>)> back) {
+    const T none(0);
+    const std::uint32_t first = active(recording_)
+                                    .push_function({}, results.empty() ? std::span<const T>(&none, 1) : results,
+                                                   [back = std::move(back)](std::span<const T> derivatives,
+                                                                            std::span<T>) { back(derivatives); });
+    return variables(first, results);
+  }
+  /// throws   InvalidArgument unless the recording is the active one of this thread
+  void check_active() const {
+    if (!is_active(recording_)) [[unlikely]]
+      inactive();
+  }
+  /// Identity of the recording, and the number of backward sweeps so far.
+  std::uint64_t recording() const { return recording_; }
+  std::size_t sweeps() const { return sweeps_; }
   /// Operations and variables recorded.
   std::size_t size() const { return records_.size(); }
   /// Memory in use by this recording and its adjoints.
@@ -146,6 +163,13 @@ class Tape {
       throw InvalidArgument("Tape: the variable does not belong to this tape's last recording");
   }
 
+  std::vector<Var<T>> variables(std::uint32_t first, std::span<const T> values) const {
+    std::vector<Var<T>> out;
+    out.reserve(values.size());
+    for (const T& w : values) out.push_back(Var<T>(w, Var<T>::recorded(recording_, first++)));
+    return out;
+  }
+
   static inline std::atomic<std::uint32_t> last_recording_{2};
   static inline constinit thread_local Tape* active_ = nullptr;
   static inline constinit thread_local Recording* top_ = nullptr;
@@ -154,6 +178,7 @@ class Tape {
 
   detail::TapeRecords<T> records_;
   std::uint32_t recording_ = 0;
+  std::size_t sweeps_ = 0;
 };
 
 }  // namespace dsns
