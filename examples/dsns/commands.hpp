@@ -9,6 +9,9 @@
 namespace dsns::program {
 
 void inspect(const std::string& source, const Settings& settings, Report& report);
+/// Maps the body to the sphere.
+void parameterize(const std::string& source, const std::filesystem::path& out, const Settings& settings,
+                  Report& report);
 /// Fits a network to the body, which then is the network. `out` may be empty: nothing is written; likewise below.
 void fit(Body& body, const std::filesystem::path& out, const Settings& settings, Report& report);
 void register_two(const Body& first, const Body& second, const std::filesystem::path& out, const Settings& settings,

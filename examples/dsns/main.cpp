@@ -138,6 +138,11 @@ int main(int argc, char** argv) {
                                       [&] { inspect(sources[0], settings, report); });
   inspect_command->add_option("FILE", sources, "the animation")->required()->expected(1);
 
+  CLI::App* map_command = command("parameterize", "map an animation to the sphere, one to one",
+                                  [&] { parameterize(sources[0], out, settings, report); });
+  map_command->add_option("FILE", sources, "the animation")->required()->expected(1);
+  map_command->add_option("-o,--output", out, "write it and its sphere, in the same colours, to this GLB");
+
   CLI::App* fit_command = command("fit", "fit a neural surface to an animation", [&] {
     settings.representation = Representation::sampled;
     std::vector<Body> bodies = load(sources, settings, report);

@@ -4,6 +4,7 @@
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/geometry/integrals.hpp>
 #include <dsns/io/obj.hpp>
+#include <dsns/mesh/area_ratios.hpp>
 #include <dsns/mesh/repair.hpp>
 #include <dsns/mesh/sampling.hpp>
 #include <dsns/mesh/sphere_mesh.hpp>

@@ -80,6 +80,11 @@ TEST_CASE("noise, needles, limbs and fans map without a flip", "[parameterizatio
     check_bijective(test::still(test::stretched(icosphere(3), {100, 1, 1})));
     check_bijective(test::still(test::stretched(icosphere(3), {100, 100, 1})));
   }
+  SECTION("400:1 ellipsoids") {
+    check_bijective(test::still(test::stretched(icosphere(4), {400, 1, 1})));
+    check_bijective(test::still(test::stretched(icosphere(4), {400, 400, 1})));
+    check_bijective(test::still(test::noisy(test::stretched(icosphere(3), {1, 400, 20}), 0.3, 2)));
+  }
   SECTION("long limbs") {
     const auto map = check_bijective(test::still(test::limbed_body(5, 25, 10)));
     CHECK(map.certificate.min_area_ratio > 0.1);
@@ -98,6 +103,23 @@ TEST_CASE("noise, needles, limbs and fans map without a flip", "[parameterizatio
     mesh.vertices.colwise() += Vec3d(1e6, 0, 0);
     check_bijective(test::still(mesh));
   }
+}
+
+TEST_CASE("200 triangulations drawn at random map without a flip", "[parameterization]") {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    INFO("seed " << seed);
+    check_bijective(test::still(test::random_triangulation(4 + int(seed) * 3 / 2, seed)));
+  }
+}
+
+TEST_CASE("100 000 vertices map without a flip", "[parameterization]") {
+#ifdef NDEBUG
+  const int rings = 250;
+#else
+  const int rings = 60;  // checked builds are twenty times slower
+#endif
+  const TriangleMesh sphere = latitude_longitude_sphere(rings, 400);
+  check_bijective(test::still(test::stretched(test::noisy(sphere, 0.002, 3), {1, 2, 5})));
 }
 
 TEST_CASE("the order of vertices and faces does not matter for certainty", "[parameterization]") {

@@ -90,6 +90,48 @@ inline TriangleMesh limbed_body(int limbs, int segments, double length) {
   return body;
 }
 
+/// A triangulation of the sphere drawn at random: vertices put into faces and edges flipped, with any number of
+/// neighbours from 3 on; positions around a random ellipsoid with noise, so that faces lie and cross anyhow.
+inline TriangleMesh random_triangulation(int vertices, unsigned seed) {
+  Uniform uniform(seed);
+  TriangleMesh mesh = tetrahedron();
+  std::vector<Eigen::Vector3i> faces;
+  for (Index f = 0; f < 4; ++f) faces.emplace_back(mesh.faces.col(f));
+  const auto has_edge = [&](int a, int b) {
+    for (const auto& f : faces)
+      if ((f.array() == a).any() && (f.array() == b).any()) return true;
+    return false;
+  };
+  const auto flip = [&](std::size_t f) {
+    const int k = uniform.below(3), a = faces[f][k], b = faces[f][(k + 1) % 3], c = faces[f][(k + 2) % 3];
+    for (std::size_t g = 0; g < faces.size(); ++g)
+      for (int j = 0; j < 3; ++j) {
+        if (faces[g][j] != b || faces[g][(j + 1) % 3] != a) continue;
+        const int d = faces[g][(j + 2) % 3];
+        if (has_edge(c, d)) return;
+        faces[f] << a, d, c;
+        faces[g] << d, b, c;
+        return;
+      }
+  };
+  for (int v = 4; v < vertices; ++v) {
+    const auto f = static_cast<std::size_t>(uniform.below(static_cast<int>(faces.size())));
+    const Eigen::Vector3i old = faces[f];
+    faces[f] << old[0], old[1], v;
+    faces.emplace_back(old[1], old[2], v);
+    faces.emplace_back(old[2], old[0], v);
+    for (int k = 0; k < 3; ++k) flip(static_cast<std::size_t>(uniform.below(static_cast<int>(faces.size()))));
+  }
+  mesh.vertices.resize(3, vertices);
+  const Vec3d axes(uniform(0.1, 3), uniform(0.1, 3), uniform(0.1, 3));
+  const double noise = uniform(0, 0.5);
+  for (int v = 0; v < vertices; ++v)
+    mesh.vertices.col(v) = axes.cwiseProduct(uniform.unit_vector()) + noise * uniform.unit_vector();
+  mesh.faces.resize(3, Index(faces.size()));
+  for (std::size_t f = 0; f < faces.size(); ++f) mesh.faces.col(Index(f)) = faces[f];
+  return mesh;
+}
+
 /// The same surface with vertices and faces in random order and faces begun at a random corner.
 inline TriangleMesh relabelled(const TriangleMesh& mesh, unsigned seed) {
   Uniform uniform(seed);

@@ -51,20 +51,27 @@ inline ConcatenatedFrames concatenate(const MeshSequence& sequence, int count) {
   return frames;
 }
 
-/// Shares of the faces in the concatenated area, caps held down, plus the floor; then unit area for the frames too.
-inline Eigen::VectorXd face_masses(ConcatenatedFrames& frames, const MeshSequence& sequence,
-                                   const ParameterizationOptions& options) {
+/// Areas of the faces, those of caps held down.
+inline Eigen::VectorXd capped_areas(const ConcatenatedFrames& frames, const MeshSequence& sequence, double cap_share) {
   const Faces& faces = sequence.faces;
   Eigen::VectorXd areas(faces.cols());
   for (Index f = 0; f < faces.cols(); ++f)
     areas[f] = area_from_lengths(frames.squared_lengths(faces(0, f), faces(1, f), faces(2, f)));
   auto caps = areas.tail(sequence.cap_faces);
-  const double surface = areas.head(faces.cols() - sequence.cap_faces).sum(), limit = options.cap_share * surface;
+  const double limit = cap_share * areas.head(faces.cols() - sequence.cap_faces).sum();
   if (caps.sum() > limit) caps *= limit / caps.sum();
+  return areas;
+}
+
+/// Shares of the faces in the concatenated area plus the floor; then unit area for the frames too.
+inline Eigen::VectorXd face_masses(ConcatenatedFrames& frames, const MeshSequence& sequence,
+                                   const ParameterizationOptions& options) {
+  const Eigen::VectorXd areas = capped_areas(frames, sequence, options.cap_share);
   const double total = areas.sum();
-  require<UnusableMesh>(surface > 1e-7, "the mesh has no area: all its vertices lie on one line");
+  require<UnusableMesh>(areas.head(areas.size() - sequence.cap_faces).sum() > 1e-7,
+                        "the mesh has no area: all its vertices lie on one line");
   frames.points /= std::sqrt(total);
-  return ((areas / total).array() + options.mass_floor / double(faces.cols())) / (1 + options.mass_floor);
+  return ((areas / total).array() + options.mass_floor / double(areas.size())) / (1 + options.mass_floor);
 }
 
 inline void require_usable(const MeshSequence& sequence, const ParameterizationOptions& options) {
