@@ -169,6 +169,75 @@ TEST_CASE("all meshes of the scene are merged, others left out", "[io]") {
   CHECK(distance(moved.frames[1], 3, Vec3d(6, 0, 1)) < 1e-12);
 }
 
+TEST_CASE("one node's meshes can be chosen, with what is below it", "[io]") {
+  const test::TemporaryFolder folder;
+  auto file = test::sliding_triangle();
+  file.nodes = R"({"name":"all","children":[1,3]},{"name":"arm","mesh":0,"children":[2]},)"
+               R"({"name":"hand","mesh":0,"translation":[0,0,1]},{"name":"hat","mesh":0,"translation":[0,0,5]})";
+  const auto path = folder.write("figure.glb", file.glb());
+  const auto chosen = [&](const std::string& node) {
+    GltfReadOptions options;
+    options.frames = 2;
+    options.node = node;
+    return read_gltf(path, options).sequence;
+  };
+  CHECK(chosen("").vertex_count() == 9);
+  CHECK(chosen("all").vertex_count() == 9);
+  CHECK(chosen("arm").vertex_count() == 6);
+  REQUIRE(chosen("hat").vertex_count() == 3);
+  CHECK(chosen("hat").frames[1](2, 0) == 5);
+  const auto said = test::complaint<FileError>([&] { chosen("wig"); });
+  CHECK(contains(said, "no node 'wig': nodes with a mesh are arm, hat, hand"));
+}
+
+TEST_CASE("frames can be counted by the second", "[io]") {
+  const test::TemporaryFolder folder;
+  const auto path = folder.write("slide.glb", test::sliding_triangle().glb());  // two seconds
+  GltfReadOptions options;
+  options.rate = 12;
+  CHECK(read_gltf(path, options).sequence.frame_count() == 25);
+  options.rate = 0.01;
+  CHECK(read_gltf(path, options).sequence.frame_count() == 2);
+  options.rate = 1e9;
+  CHECK(contains(test::complaint<FileError>([&] { read_gltf(path, options); }), "give a lower rate"));
+  options.rate = -1;
+  CHECK_THROWS_AS(read_gltf(path, options), InvalidArgument);
+}
+
+TEST_CASE("a file without animation is one frame where that is allowed", "[io]") {
+  const test::TemporaryFolder folder;
+  auto file = test::sliding_triangle();
+  file.animations = "";
+  const auto path = folder.write("rock.glb", file.glb());
+  CHECK(contains(test::complaint<UnusableMesh>([&] { read_gltf(path); }), "has no animation"));
+  GltfReadOptions options;
+  options.allow_still = true;
+  const auto rock = read_gltf(path, options);
+  CHECK(rock.sequence.frame_count() == 1);
+  CHECK(rock.sequence.name == "rock");
+  CHECK_FALSE(rock.clip_chosen_by_default);
+  options.clip = "roll";
+  CHECK(contains(test::complaint<UnusableMesh>([&] { read_gltf(path, options); }), "has no animation"));
+}
+
+TEST_CASE("extensions that a file requires are read, ignored or refused by name", "[io]") {
+  const auto requiring = [](const std::string& extension) {
+    auto file = test::sliding_triangle();
+    const int points = file.numbers<std::int8_t>("VEC3", {0, 0, 0, 127, 0, 0, 0, -128, 0}, R"("normalized":true)");
+    if (extension == "KHR_mesh_quantization")
+      file.meshes = R"({"primitives":[{"attributes":{"POSITION":)" + text(points) + "}}]}";
+    file.more = R"(,"extensionsUsed":[")" + extension + R"("],"extensionsRequired":[")" + extension + "\"]";
+    return file;
+  };
+  const auto quantized = read(requiring("KHR_mesh_quantization"), 2);
+  CHECK(distance(quantized.frames[0], 1, quantized.frames[0].col(0) + Vec3d(1, 0, 0)) < 1e-12);
+  CHECK(distance(quantized.frames[0], 2, quantized.frames[0].col(0) - Vec3d(0, 1, 0)) < 1e-12);
+  CHECK(complaint_about(requiring("KHR_materials_unlit").glb()).empty());
+  for (const char* name :
+       {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing", "FB_ngon"})
+    CHECK(contains(complaint_about(requiring(name).glb()), std::string("needs the extension ") + name));
+}
+
 TEST_CASE("JSON with embedded, external and missing buffers", "[io]") {
   const test::TemporaryFolder folder;
   auto file = test::sliding_triangle();

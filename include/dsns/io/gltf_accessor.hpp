@@ -97,12 +97,16 @@ inline std::string first_line(std::string text) {
   return text.empty() ? "no reason given" : text;
 }
 
-/// Geometry behind these extensions is compressed or generated and cannot be read here.
+/// What a file requires may change its geometry, unless it is known to concern its looks.
 inline void refuse_unreadable_extensions(const GltfFile& file) {
+  constexpr std::string_view harmless[] = {"KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_",
+                                           "MSFT_texture_",         "KHR_lights_",    "EXT_lights_",  "KHR_techniques_",
+                                           "MSFT_packing_",         "KHR_xmp"};
   for (const std::string& extension : file.model.extensionsRequired)
-    file.check(extension.find("draco") == std::string::npos && extension.find("meshopt") == std::string::npos &&
-                   extension.find("instancing") == std::string::npos,
-               "the geometry needs the extension ", extension, ": export it without compression or instancing");
+    file.check(std::any_of(std::begin(harmless), std::end(harmless),
+                           [&](std::string_view known) { return extension.rfind(known, 0) == 0; }),
+               "it needs the extension ", extension,
+               ", which cannot be read: export it without compression, instancing or whatever this is");
 }
 
 /// `path` is where relative names in the file start, and what messages call it.
@@ -126,8 +130,8 @@ inline GltfFile parse_gltf(std::string_view bytes, const std::filesystem::path& 
   } catch (const std::exception& failure) {
     error = failure.what();
   }
+  refuse_unreadable_extensions(file);  // also where the parser stumbled over it
   file.check(parsed, "damaged glTF (", first_line(error), "): export the animation again");
-  refuse_unreadable_extensions(file);
   return file;
 }
 

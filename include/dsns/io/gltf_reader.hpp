@@ -4,6 +4,7 @@
 #include <dsns/mesh/triangle_mesh.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -14,6 +15,9 @@ namespace dsns {
 struct GltfReadOptions {
   std::string clip;  ///< full name, or its part after the last '|'; empty: the first clip
   int frames = 32;
+  double rate = 0;           ///< frames a second instead of a number of frames, if positive
+  std::string node = {};     ///< only the meshes at the node of this name and below it; empty: all of the scene
+  bool allow_still = false;  ///< a file without animation is one frame
 };
 
 struct GltfAnimation {
@@ -119,8 +123,24 @@ inline MeshPart read_part(const GltfFile& file, std::size_t node_index, const ti
   return part;
 }
 
-/// The triangles of all meshes that the file's scene shows, in the order of its nodes.
-inline std::vector<MeshPart> read_parts(const GltfFile& file, const Hierarchy& tree) {
+/// For each node whether it is the one of that name, or below one that is.
+inline std::vector<char> nodes_below(const GltfFile& file, const Hierarchy& tree, const std::string& name) {
+  std::vector<char> below(file.model.nodes.size(), name.empty() ? 1 : 0);
+  std::string names;
+  bool found = name.empty();
+  for (const int node : tree.order) {
+    const auto i = static_cast<std::size_t>(node);
+    const auto& n = file.model.nodes[i];
+    if (n.name == name) below[i] = 1, found = true;
+    if (tree.parent[i] >= 0 && below[static_cast<std::size_t>(tree.parent[i])] != 0) below[i] = 1;
+    if (n.mesh >= 0) names += (names.empty() ? "" : ", ") + n.name;
+  }
+  file.check(found, "there is no node '", name, "': nodes with a mesh are ", names);
+  return below;
+}
+
+/// The triangles of all meshes that the file's scene shows, at the chosen node or below it, in the order of its nodes.
+inline std::vector<MeshPart> read_parts(const GltfFile& file, const Hierarchy& tree, const std::string& node_name) {
   const auto& model = file.model;
   std::vector<char> shown(model.nodes.size(), model.scenes.empty() ? 1 : 0);
   if (!model.scenes.empty())
@@ -128,11 +148,12 @@ inline std::vector<MeshPart> read_parts(const GltfFile& file, const Hierarchy& t
       at(file, model.nodes, root, "node");
       shown[static_cast<std::size_t>(root)] = 1;
     }
+  const std::vector<char> chosen = nodes_below(file, tree, node_name);
   std::vector<MeshPart> parts;
   for (const int node : tree.order) {
     const auto i = static_cast<std::size_t>(node);
     if (tree.parent[i] >= 0 && shown[static_cast<std::size_t>(tree.parent[i])] != 0) shown[i] = 1;
-    if (shown[i] == 0 || model.nodes[i].mesh < 0) continue;
+    if (shown[i] == 0 || chosen[i] == 0 || model.nodes[i].mesh < 0) continue;
     for (const auto& primitive : at(file, model.meshes, model.nodes[i].mesh, "mesh").primitives)
       if (primitive.mode >= TINYGLTF_MODE_TRIANGLES && primitive.mode <= TINYGLTF_MODE_TRIANGLE_FAN)
         parts.push_back(read_part(file, i, primitive));
@@ -205,22 +226,28 @@ inline Mat3X posed_points(const std::vector<MeshPart>& parts, const ScenePose& p
 }
 
 inline GltfAnimation bake(const GltfFile& file, const GltfReadOptions& options) {
-  const Clip clip = read_clip(file, find_clip(file, options.clip));
-  require<UnusableMesh>(clip.end > clip.start, file.name, ": clip '", clip.name,
+  const bool still = options.allow_still && options.clip.empty() && file.model.animations.empty();
+  const Clip clip = still ? Clip{} : read_clip(file, find_clip(file, options.clip));
+  require<UnusableMesh>(still || clip.end > clip.start, file.name, ": clip '", clip.name,
                         "' holds a single pose and no motion: choose another clip");
   const Hierarchy tree = hierarchy(file);
-  const auto parts = read_parts(file, tree);
+  const auto parts = read_parts(file, tree, options.node);
   std::vector<NodePose> rest;
   for (const auto& node : file.model.nodes) rest.push_back(rest_pose(file, node));
 
-  GltfAnimation result{merged(parts), clip.name, options.clip.empty()};
+  GltfAnimation result{merged(parts), clip.name, options.clip.empty() && !still};
   MeshSequence& sequence = result.sequence;
   require<UnusableMesh>(sequence.faces.cols() > 0, file.name,
                         " has no triangles in its scene: export a mesh with faces");
-  sequence.duration = clip.end - clip.start;
-  sequence.name = std::filesystem::path(file.name).stem().string() + "_" + last_part(clip.name);
-  for (int k = 0; k < options.frames; ++k) {
-    const double time = clip.start + sequence.duration * k / (options.frames - 1);
+  const double duration = clip.end - clip.start;
+  sequence.duration = still ? 1 : duration;
+  sequence.name = std::filesystem::path(file.name).stem().string() + (still ? "" : "_" + last_part(clip.name));
+  double frames = still ? 1 : options.frames;
+  if (!still && options.rate > 0) frames = std::max(2.0, std::round(options.rate * duration) + 1);
+  file.check(frames <= 1e5, "clip '", clip.name, "' has ", frames, " frames at ", options.rate,
+             " a second: give a lower rate");
+  for (int k = 0; k < int(frames); ++k) {
+    const double time = clip.start + (still ? 0 : duration * k / (frames - 1));
     sequence.frames.push_back(posed_points(parts, pose_at(tree, rest, clip, time)));
     file.check(sequence.frames.back().allFinite(), "frame ", k, " of clip '", clip.name,
                "' has positions that are not finite numbers: export the animation again");
@@ -243,11 +270,13 @@ inline std::vector<ClipInfo> gltf_clips(const std::filesystem::path& path) {
 }
 
 /// The triangles of a .glb or .gltf file at equidistant times from a clip's first key to its last: skins, morph targets
-/// and moving nodes, step, linear and cubic interpolation; textures and lines are ignored, meshes merged.
+/// and moving nodes, step, linear and cubic interpolation; textures and lines are ignored, the scene's meshes merged.
 /// accuracy that of the file's floats [io/gltf_reader_test: closed forms]
 /// throws   FileError for damaged files and unknown clips, UnusableMesh where there is no animation or no triangle
 inline GltfAnimation read_gltf(const std::filesystem::path& path, const GltfReadOptions& options = {}) {
-  require(options.frames >= 2, "read_gltf: ", options.frames, " frames, give at least 2");
+  require(options.rate > 0 || options.frames >= 2, "read_gltf: ", options.frames, " frames, give at least 2");
+  require(options.rate >= 0 && std::isfinite(options.rate), "read_gltf: ", options.rate,
+          " frames a second, give a positive number or 0");
   return detail::gltf::bake(detail::gltf::load_gltf(path), options);
 }
 
