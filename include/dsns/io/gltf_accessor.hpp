@@ -90,6 +90,13 @@ inline bool ignore_image(tinygltf::Image*, const int, std::string*, std::string*
   return true;
 }
 
+/// Encoded as it came, for files that are written anew.
+inline bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                       const unsigned char* bytes, int size, void*) {
+  image->image.assign(bytes, bytes + std::max(size, 0));
+  return true;
+}
+
 /// The first line of a parser's complaint, without its full stop.
 inline std::string first_line(std::string text) {
   text.resize(std::min(text.find('\n'), text.size()));
@@ -110,7 +117,8 @@ inline void refuse_unreadable_extensions(const GltfFile& file) {
 }
 
 /// `path` is where relative names in the file start, and what messages call it.
-inline GltfFile parse_gltf(std::string_view bytes, const std::filesystem::path& path) {
+inline GltfFile parse_gltf(std::string_view bytes, const std::filesystem::path& path,
+                           tinygltf::LoadImageDataFunction load_image = &ignore_image) {
   const bool binary = is_glb(bytes);
   GltfFile file{path.string(), {}};
   const auto start = std::min(bytes.find_first_not_of(" \t\r\n\xEF\xBB\xBF"), bytes.size());
@@ -118,7 +126,7 @@ inline GltfFile parse_gltf(std::string_view bytes, const std::filesystem::path& 
              "this is neither a GLB file nor glTF JSON: export the animation as .glb or .gltf");
   file.check(nesting_depth(json_text(bytes)) < 500, "the JSON is nested too deeply: export the animation again");
   tinygltf::TinyGLTF parser;
-  parser.SetImageLoader(&ignore_image, nullptr);
+  parser.SetImageLoader(load_image, nullptr);
   std::string error, warning;
   bool parsed = false;
   try {

@@ -31,6 +31,7 @@ namespace detail::gltf {
 /// One primitive at one node: positions before deformation, and what deforms them.
 struct MeshPart {
   std::size_t node;
+  const tinygltf::Primitive* primitive;
   Mat3X points;
   std::vector<Mat3X> targets;  ///< displacements by morph target; empty matrices displace nothing
   const tinygltf::Skin* skin = nullptr;
@@ -109,6 +110,7 @@ inline MeshPart read_part(const GltfFile& file, std::size_t node_index, const ti
   const auto& node = file.model.nodes[node_index];
   MeshPart part;
   part.node = node_index;
+  part.primitive = &primitive;
   file.check(primitive.attributes.count("POSITION") > 0, "a mesh of node '", node.name,
              "' has no positions: export the file again");
   part.points = read_accessor(file, primitive.attributes.at("POSITION"), TINYGLTF_TYPE_VEC3, "POSITION");

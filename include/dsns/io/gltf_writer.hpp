@@ -48,6 +48,12 @@ class GltfBuilder {
     model.defaultScene = 0;
   }
 
+  /// A model to be added to, with all its numbers in one buffer.
+  GltfBuilder(tinygltf::Model whole, std::vector<unsigned char> bytes)
+      : model(std::move(whole)), bytes_(std::move(bytes)) {
+    model.buffers.clear();
+  }
+
   /// The accessor of a matrix in the order of its columns; `type` is the kind of element, `target` of buffer or 0.
   template <class Matrix>
   int append(const Matrix& values, int type, int target) {

@@ -25,11 +25,12 @@ struct RepairOptions {
 
 struct RepairResult {
   MeshSequence sequence;
-  std::vector<std::string> actions;  ///< what was done, in plain words; empty where nothing was needed
-  MeshDiagnosis before;              ///< of the mesh as given
-  MeshDiagnosis welded;              ///< after welding and dropping degenerate and duplicate faces, all pieces
-  MeshDiagnosis after;               ///< of the result: closed, genus 0
-  std::vector<Index> source_vertex;  ///< for each vertex the given one it moves with; -1 for the centre of a cap
+  std::vector<std::string> actions;    ///< what was done, in plain words; empty where nothing was needed
+  MeshDiagnosis before;                ///< of the mesh as given
+  MeshDiagnosis welded;                ///< after welding and dropping degenerate and duplicate faces, all pieces
+  MeshDiagnosis after;                 ///< of the result: closed, genus 0
+  std::vector<Index> source_vertex;    ///< for each vertex the given one it moves with; -1 for the centre of a cap
+  std::vector<Index> repaired_vertex;  ///< for each vertex given the one it became; -1 where it was dropped
 };
 
 namespace detail {
@@ -161,6 +162,11 @@ inline RepairResult repair(const MeshSequence& raw, const RepairOptions& options
   const auto is_cap = [&](Index f) { return f >= raw.faces.cols() - raw.cap_faces; };
   sequence.cap_faces = std::count_if(kept.source.begin(), kept.source.end(), is_cap);
   result.source_vertex = std::move(split.source);
+  std::vector<Index> became(first.size(), -1);
+  for (std::size_t v = result.source_vertex.size(); v-- > 0;)
+    became[static_cast<std::size_t>(result.source_vertex[v])] = static_cast<Index>(v);
+  for (const Index representative : first)
+    result.repaired_vertex.push_back(became[static_cast<std::size_t>(representative)]);
   for (const Mat3X& frame : raw.frames) sequence.frames.emplace_back(frame(Eigen::all, result.source_vertex));
   detail::cap_holes(result);
 
