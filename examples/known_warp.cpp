@@ -39,7 +39,7 @@ int main(int argc, char** argv) try {
   const SampledSurface second(body.sequence, sphere.vertices);
 
   constexpr double degree = pi / 180;
-  const SphereDiffeomorphism warp = random_diffeomorphism(7, 3, 12 * degree);
+  const SphereDiffeomorphism warp = random_diffeomorphism(7, 3, 5 * degree);
   SphereDiffeomorphism gamma(rotation_exp(Vec3d(0.4, 2.0, -0.3)));
   for (const auto& field : warp.increments()) gamma.append(field);
   const Mat3 O = rotation_exp(Vec3d(-0.9, 0.5, 1.4));

@@ -2,6 +2,7 @@
 #include "commands.hpp"
 #include "scene.hpp"
 
+#include <dsns/mesh/sphere_mask.hpp>
 #include <dsns/stats/moving_mean.hpp>
 
 #include <numeric>
@@ -10,8 +11,10 @@ namespace dsns::program {
 
 namespace {
 
-RegistrationOptions registration_options(const Settings& settings) {
+RegistrationOptions registration_options(const Body& first, const Settings& settings) {
   RegistrationOptions options;
+  if (first.normalized.sequence.cap_faces > 0)
+    options.spatial.mask = SphereMask(first.normalized.sequence, first.sphere.vertices);
   options.spatial.search = settings.search;
   options.spatial.threads = settings.threads;
   options.snapshots = settings.frames;
@@ -79,7 +82,7 @@ void register_two(const Body& a, const Body& b, const std::filesystem::path& out
                   Report& report) {
   ProgressLine line;
   const MovingRegistration r =
-      register_moving(a.surface, b.surface, a.sphere, registration_options(settings), std::ref(line));
+      register_moving(a.surface, b.surface, a.sphere, registration_options(a, settings), std::ref(line));
   report_registration(r, report);
   say_units(report);
   if (out.empty()) return say_not_written(report);
@@ -97,11 +100,11 @@ void register_two(const Body& a, const Body& b, const std::filesystem::path& out
 void geodesic(const Body& a, const Body& b, const std::filesystem::path& out, int steps, const Settings& settings,
               Report& report) {
   ProgressLine line;
-  const RegistrationOptions options = registration_options(settings);
+  const RegistrationOptions options = registration_options(a, settings);
   const MovingRegistration r = register_moving(a.surface, b.surface, a.sphere, options, std::ref(line));
   const std::vector<SurfaceSamples> samples{sample(a.surface, {}, a.sphere.vertices, options),
                                             sample(b.surface, r.spatial, a.sphere.vertices, options)};
-  const FunctionalPca pca = joint_pca(samples, a.sphere.faces, options.pca);
+  const FunctionalPca pca = joint_pca(samples, a.sphere, options);
   const CurveGeodesic path(shape_curve(samples[0], pca), shape_curve(samples[1], pca), r.temporal.warp);
   report_registration(r, report);
   report.figure("components", "principal components", pca.modes());
@@ -146,7 +149,7 @@ void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, con
           const Settings& settings, Report& report) {
   ProgressLine line;
   MovingMeanOptions options;
-  options.registration = registration_options(settings);
+  options.registration = registration_options(bodies.front(), settings);
   options.karcher.threads = settings.threads;
   std::vector<AnyAnimatedSurface> surfaces;
   for (const auto& body : bodies) surfaces.push_back(body.surface);

@@ -24,23 +24,27 @@ void inspect(const std::string& name, const Settings& settings, Report& report) 
   report.figure("duration", "duration, seconds", raw.duration);
   std::vector<std::string> actions;
   MeshDiagnosis d = file;
+  std::string reason;
   try {
-    const RepairResult repaired = repair(raw);
-    d = repaired.welded;
-    actions = repaired.actions;
-    report.figure("usable", "usable", true);
-    report.figure("vertices_used", "vertices after repair", repaired.after.vertices);
-    report.figure("faces_used", "faces after repair", repaired.after.faces);
-  } catch (const UnusableMesh& reason) {
-    report.figure("usable", "usable", false);
-    report.figure("reason", "reason", std::string(reason.what()));
+    d = diagnose_welded(raw);
+    actions = repair(raw).actions;
+  } catch (const UnusableMesh& unusable) {
+    reason = unusable.what();
   }
   report.figure("vertices", "vertices, welded", d.vertices);
   report.figure("faces", "faces, welded", d.faces);
+  report.figure("dropped_faces", "degenerate and duplicate faces", file.faces - d.faces);
   report.figure("components", "components, welded", d.components);
   report.figure("euler_characteristic", "Euler characteristic", d.euler_characteristic);
+  if (d.genus) report.figure("genus", "genus", *d.genus);
   report.figure("boundary_loops", "boundary loops", d.boundary_loops);
+  report.figure("boundary_edges", "boundary edges", d.boundary_edges);
+  report.figure("nonmanifold_edges", "edges with more than two faces", d.nonmanifold_edges);
+  report.figure("nonmanifold_vertices", "pinched vertices", d.nonmanifold_vertices);
+  report.figure("consistently_oriented", "faces agree about their sides", d.consistently_oriented);
   report.figure("closed", "closed", d.closed);
+  report.figure("usable", "usable", reason.empty());
+  if (!reason.empty()) report.figure("reason", "reason", reason);
   if (!actions.empty()) report.figure("actions", "what dsns does to it", actions);
 }
 

@@ -5,8 +5,10 @@
 #include <dsns/geometry/integrals.hpp>
 #include <dsns/io/obj.hpp>
 #include <dsns/mesh/area_ratios.hpp>
+#include <dsns/mesh/own_mesh.hpp>
 #include <dsns/mesh/repair.hpp>
 #include <dsns/mesh/sampling.hpp>
+#include <dsns/mesh/sphere_mask.hpp>
 #include <dsns/mesh/sphere_mesh.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
 #include <dsns/nn/fit.hpp>

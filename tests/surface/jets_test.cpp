@@ -113,7 +113,7 @@ TEST_CASE("a registered surface has the jets of the composed functor", "[surface
   LimbedBody body;
   body.axes = {1, 0.7, 0.5};
   body.limbs = {{Vec3d(1, 1, 0.3).normalized(), 4, Vec3d(0.6, 0.1, 0.2), Vec3d(0, 0.3, 0.3), 0.1}};
-  const SphereDiffeomorphism gamma = random_diffeomorphism(2, 3, 0.2);
+  const SphereDiffeomorphism gamma = random_diffeomorphism(2, 3, 0.08);
   const TimeWarp zeta = random_warp(4, 0.5);
   const Mat3 O = rotation_exp(Vec3d(0.3, 0.2, -0.9));
   const RegisteredSurface view(body, O, gamma, zeta);

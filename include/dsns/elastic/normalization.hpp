@@ -12,13 +12,15 @@ struct NormalizedSequence {
   double scale = 1;  ///< input length = scale * normalised length
 };
 
+/// Faces that close holes have no weight.
 /// throws   UnusableMesh where a frame has no area
 inline NormalizedSequence normalize(const MeshSequence& input) {
   NormalizedSequence out{input, Mat3X(3, input.frame_count()), 1};
+  const Faces surface = input.faces.leftCols(input.faces.cols() - input.cap_faces);
   double mean_area = 0;
   for (int k = 0; k < input.frame_count(); ++k) {
     Mat3X& x = out.sequence.frames[std::size_t(k)];
-    const Eigen::VectorXd areas = vertex_areas(x, input.faces);
+    const Eigen::VectorXd areas = vertex_areas(x, surface);
     const double total = areas.sum();
     require<UnusableMesh>(total > 0 && std::isfinite(total), input.name, ": frame ", k, " has an area of ", total,
                           ", the surface must have positive area at all times");

@@ -1,7 +1,9 @@
 #pragma once
 /// Options and results of spatial registration.
+#include <dsns/core/errors.hpp>
 #include <dsns/sphere/diffeomorphism.hpp>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,7 +38,20 @@ struct SpatialOptions {
   double min_jacobian = 0.02;      ///< of the composition, at the quadrature nodes
   double longest_step = 0.8;       ///< radians
   int threads = 1;
+  /// The part of the sphere on which the surfaces are compared, as weights from 0 to 1 at unit vectors of the first one's
+  /// sphere, such as a SphereMask; empty: all of it.
+  std::function<Eigen::VectorXd(const Mat3X&)> mask{};
 };
+
+/// The nodes with their weights times the mask.
+inline SphereQuadrature masked(SphereQuadrature q, const SpatialOptions& options) {
+  if (!options.mask) return q;
+  const Eigen::VectorXd mask = options.mask(q.points);
+  require(mask.size() == q.size() && mask.minCoeff() >= 0 && mask.maxCoeff() > 0,
+          "SpatialOptions: the mask must give a weight for each point, none negative and not all 0");
+  q.weights.array() *= mask.array();
+  return q;
+}
 
 /// Energies are |h1 - O (h2 * gamma)|^2 of the SRNFs h at the last level's degree, squared length unit, whatever weight the
 /// levels give to positions.

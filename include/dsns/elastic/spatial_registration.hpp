@@ -21,7 +21,7 @@ class SpatialPair {
       : first_(centred(first)), second_(centred(second)), options_(&options) {
     require(!first.empty() && first.size() == second.size(), "register_spatially: ", first.size(), " surfaces against ",
             second.size(), ", give as many of both, at least one");
-    const SphereQuadrature q = sphere_quadrature(options.latitudes);
+    const SphereQuadrature q = masked(sphere_quadrature(options.latitudes), options);
     double area = 0;
     for (const auto& f : first_) area += srnf(f, q.points).colwise().squaredNorm() * q.weights;
     position_scale_ = 3 / std::sqrt(area / double(first.size()));
@@ -67,7 +67,7 @@ struct RotationCandidate {
 
 /// Candidates in the order of their energy, the identity among them.
 inline std::vector<RotationCandidate> search_rotations(const SpatialPair& pair, const SpatialOptions& options) {
-  const SphereQuadrature q = fibonacci_sphere(400);
+  const SphereQuadrature q = masked(fibonacci_sphere(400), options);
   const bool upright = options.search == RotationSearch::upright;
   SpatialLevel level = options.levels.front();
   if (upright) level.position_weight = 1;
@@ -90,7 +90,7 @@ inline std::vector<RotationCandidate> search_rotations(const SpatialPair& pair, 
 inline RotationCandidate best_rotation(const SpatialPair& pair, const SpatialOptions& options) {
   std::vector<RotationCandidate> candidates = search_rotations(pair, options);
   candidates.resize(std::min(candidates.size(), std::size_t(std::max(1, options.refined))));
-  const SphereQuadrature q = sphere_quadrature(12);
+  const SphereQuadrature q = masked(sphere_quadrature(12), options);
   const SpatialProblem problem = pair.problem(options.levels.front(), q);
   for (auto& candidate : candidates) {
     std::vector<SphereVectorField> fields;
@@ -130,7 +130,7 @@ inline SpatialResult register_harmonic(std::span<const HarmonicSurface> first, s
                                        const SpatialOptions& options = {}, const Progress& progress = {}) {
   require(!options.levels.empty(), "register_spatially: no levels, give at least one");
   const detail::SpatialPair pair(first, second, options);
-  const SphereQuadrature q = sphere_quadrature(options.latitudes);
+  const SphereQuadrature q = masked(sphere_quadrature(options.latitudes), options);
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(q.size());
 
   detail::RotationCandidate turn{Mat3::Identity(), Mat3::Identity(), 0};
@@ -205,7 +205,8 @@ inline SpatialResult refine_harmonic(std::span<const HarmonicSurface> first, std
   } else {
     result.summary.energy_after = step.summary.energy_after;
     result.summary.steps += step.summary.steps;
-    result.summary.energies.insert(result.summary.energies.end(), step.summary.energies.begin(), step.summary.energies.end());
+    result.summary.energies.insert(result.summary.energies.end(), step.summary.energies.begin(),
+                                   step.summary.energies.end());
   }
   return result;
 }

@@ -131,6 +131,14 @@ inline void cap_holes(RepairResult& result) {
 
 }  // namespace detail
 
+/// What the mesh is once coincident vertices are one and degenerate and duplicate faces are gone, usable or not.
+/// throws   InvalidArgument, UnusableMesh for sequences that hold no mesh at all
+inline MeshDiagnosis diagnose_welded(const MeshSequence& raw, const RepairOptions& options = {}) {
+  detail::check_sequence(raw);
+  const auto first = coincident_vertices(raw, options.weld_tolerance, options.weld_frames);
+  return diagnose(detail::welded_faces(raw.faces, first).faces, raw.vertex_count());
+}
+
 /// Welds coincident vertices, drops degenerate and duplicate faces, keeps the largest piece, parts it where it touches
 /// itself in a vertex, orients it outwards (positive mean volume) and caps holes: the caps are the trailing cap_faces.
 /// throws   UnusableMesh in one sentence: pieces of comparable size, edges with three faces, one-sided, handles

@@ -136,28 +136,43 @@ inline DiffeomorphismCertificate certify(const SphereDiffeomorphism& gamma) {
   return {gamma.displacement(charts_at(grid.points)).J.minCoeff(), grid.size()};
 }
 
-/// A random smooth diffeomorphism without rotation, three increments of degree up to `degree`, whose displacement is
-/// `size` radians in the root mean square (of the sum of steps; compositions fall a little short).
+/// A random smooth diffeomorphism of three increments of degree up to `degree`, which moves points by `size` radians in the
+/// root mean square over the sphere.
+/// throws   InvalidArgument unless degree >= 1 and 0 <= size <= 0.5; Error where a map of that size folds, as large ones of
+///          high degree do
 inline SphereDiffeomorphism random_diffeomorphism(std::uint64_t seed, int degree, double size) {
+  require(degree >= 1 && size >= 0 && size <= 0.5, "random_diffeomorphism: degree ", degree, " and size ", size,
+          " radians, give at least 1 and 0 to 0.5");
   constexpr int increments = 3;
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  const SphereQuadrature q = sphere_quadrature(degree + 2);
-  SphereDiffeomorphism gamma;
+  const SphereQuadrature q = sphere_quadrature(degree + 8);
+  const Eigen::ArrayXd l = harmonic_degrees(degree);
+  std::vector<SphereVectorField> fields;
   for (int k = 0; k < increments; ++k) {
     SphereVectorField v = SphereVectorField::zero(degree);
-    const Eigen::ArrayXd l = harmonic_degrees(degree);
     for (Index i = 1; i < v.a.size(); ++i) {  // decay faster than the degree keeps the fields smooth
       v.a[i] = normal(random) * std::pow(l[i], -2.5);
       v.b[i] = normal(random) * std::pow(l[i], -2.5);
     }
-    double square = 0;
-    for (Index i = 0; i < q.size(); ++i) square += q.weights[i] * evaluate<double>(v, q.points.col(i)).squaredNorm();
-    const double scale = size / increments / std::sqrt(square / (4 * pi));
-    v.a *= scale;
-    v.b *= scale;
-    gamma.append(std::move(v));
+    fields.push_back(std::move(v));
   }
+  const auto scaled = [&](double factor) {
+    SphereDiffeomorphism gamma;
+    for (const SphereVectorField& v : fields) gamma.append({v.degree, factor * v.a, factor * v.b});
+    return gamma;
+  };
+  double factor = 0.01;  // the displacement grows nearly in proportion
+  for (int round = 0; round < 8 && size > 0; ++round) {
+    const Mat3X y = scaled(factor)(q.points);
+    double square = 0;
+    for (Index i = 0; i < q.size(); ++i) square += q.weights[i] * std::pow(angle_between(q.points.col(i), y.col(i)), 2);
+    factor *= size / std::sqrt(square / (4 * pi));
+  }
+  SphereDiffeomorphism gamma = scaled(size > 0 ? factor : 0);
+  const DiffeomorphismCertificate certificate = certify(gamma);
+  require<Error>(certificate.holds(), "random_diffeomorphism: the map of seed ", seed, " and degree ", degree,
+                 " folds before it moves points by ", size, " radians: give a smaller size or another seed");
   return gamma;
 }
 

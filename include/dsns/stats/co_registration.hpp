@@ -53,15 +53,17 @@ SurfaceSamples sample(const F& surface, const SpatialResult& registration, const
   return samples;
 }
 
-/// One basis for all samples. Weights: a third of the area around each vertex, averaged over all surfaces and times.
-inline FunctionalPca joint_pca(const std::vector<SurfaceSamples>& samples, const Faces& faces,
-                               const PcaOptions& options) {
+/// One basis for all samples at the vertices of the sphere mesh. Weights: a third of the area around each vertex, averaged
+/// over all surfaces and times, where options.spatial.mask lets it.
+inline FunctionalPca joint_pca(const std::vector<SurfaceSamples>& samples, const TriangleMesh& sphere,
+                               const RegistrationOptions& options) {
   std::vector<Mat3X> all;
   for (const auto& s : samples) all.insert(all.end(), s.snapshots.begin(), s.snapshots.end());
   require(!all.empty(), "joint_pca: no samples, give at least one surface");
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(all.front().cols());
-  for (const auto& x : all) weights += vertex_areas(x, faces) / double(all.size());
-  return {all, weights, options};
+  for (const auto& x : all) weights += vertex_areas(x, sphere.faces) / double(all.size());
+  if (options.spatial.mask) weights.array() *= options.spatial.mask(sphere.vertices).array();
+  return {all, weights, options.pca};
 }
 
 /// The curve that a sampled surface traces in the space of the components; velocities are projected, never differenced.
@@ -105,7 +107,7 @@ MovingRegistration register_moving(const F1& first, const F2& second, const Tria
     result.spatial = round == 0 ? register_harmonic(target, moved, options.spatial, progress)
                                 : refine_harmonic(target, moved, result.spatial, options.spatial, progress);
     const std::vector<SurfaceSamples> samples{target_samples, sample(second, result.spatial, sphere.vertices, options)};
-    const FunctionalPca pca = joint_pca(samples, sphere.faces, options.pca);
+    const FunctionalPca pca = joint_pca(samples, sphere, options);
     result.temporal = register_temporally(shape_curve(samples[0], pca), shape_curve(samples[1], pca), options.temporal);
     report(progress, "temporal registration", double(round + 1) / options.rounds);
   }

@@ -36,7 +36,7 @@ MovingMean mean_of_moving(const std::vector<F>& surfaces, const TriangleMesh& sp
                : register_moving(surfaces[0], surfaces[i], sphere, options.registration, progress));
     samples.push_back(sample(surfaces[i], result.registrations[i].spatial, sphere.vertices, options.registration));
   }
-  const FunctionalPca pca = joint_pca(samples, sphere.faces, options.registration.pca);
+  const FunctionalPca pca = joint_pca(samples, sphere, options.registration);
   result.pca_variances.assign(pca.variances().begin(), pca.variances().end());
   result.pca_residual = pca.residual();
   std::vector<Curve> curves;
