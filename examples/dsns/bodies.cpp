@@ -2,7 +2,7 @@
 
 #include <dsns/core/spline.hpp>
 #include <dsns/io/gltf_reader.hpp>
-#include <dsns/io/obj.hpp>
+#include <dsns/io/frames.hpp>
 #include <dsns/io/source_name.hpp>
 #include <dsns/mesh/sampling.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>

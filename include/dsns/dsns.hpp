@@ -3,7 +3,7 @@
 #include <dsns/elastic/geodesic.hpp>
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/geometry/integrals.hpp>
-#include <dsns/io/obj.hpp>
+#include <dsns/io/frames.hpp>
 #include <dsns/mesh/area_ratios.hpp>
 #include <dsns/mesh/own_mesh.hpp>
 #include <dsns/mesh/repair.hpp>

@@ -1,7 +1,7 @@
 #include "catch.hpp"
 
 #include <dsns/io/gltf_reader.hpp>
-#include <dsns/io/obj.hpp>
+#include <dsns/io/frames.hpp>
 #include <dsns/mesh/repair.hpp>
 
 #include <filesystem>
@@ -71,7 +71,7 @@ TEST_CASE("baked gallops agree with those baked by other hands", "[io][data]") {
   if (!fs::exists(data_folder / "obj_sequences")) DSNS_SKIP("DSNS_TEST_DATA_DIR has no OBJ sequences");
   for (const std::string animal : {"Cow", "Fox", "Horse", "Wolf"}) {
     CAPTURE(animal);
-    const auto theirs = read_obj_sequence(data_folder / "obj_sequences" / (animal + "_Gallop"));
+    const auto theirs = read_frames(data_folder / "obj_sequences" / (animal + "_Gallop"));
     // Their frames divide the cycle: the 25th would be the first one again, ours ends with it.
     const auto raw = read_gltf(data_folder / "quadrupeds" / (animal + ".glb"), {"Gallop", 25}).sequence;
     const auto ours = repair(raw).sequence;

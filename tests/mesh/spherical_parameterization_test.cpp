@@ -1,4 +1,4 @@
-#include <dsns/io/obj.hpp>
+#include <dsns/io/frames.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
 
 #include <algorithm>
@@ -221,7 +221,7 @@ TEST_CASE("real galloping animals map without a flip", "[parameterization][data]
   for (const char* name : {"Horse_Gallop", "Wolf_Gallop"}) {
     const std::filesystem::path folder = std::filesystem::path(DSNS_TEST_DATA_DIR) / "obj_sequences" / name;
     if (!std::filesystem::exists(folder)) DSNS_SKIP("no " << folder.string());
-    const auto map = check_bijective(read_obj_sequence(folder));
+    const auto map = check_bijective(read_frames(folder));
     CHECK(map.certificate.min_area_ratio > 0.1);
   }
 #else

@@ -3,6 +3,7 @@
 /// a file may claim anything.
 #include <dsns/core/errors.hpp>
 #include <dsns/core/types.hpp>
+#include <dsns/io/file_bytes.hpp>
 
 #include <tiny_gltf.h>
 
@@ -12,13 +13,11 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 namespace dsns::detail::gltf {
@@ -43,20 +42,6 @@ const T& at(const GltfFile& file, const std::vector<T>& list, int index, std::st
   file.check(index >= 0 && static_cast<std::size_t>(index) < list.size(), "there is no ", what, " ", index, ", only ",
              list.size(), " of them: the file is damaged, export it again");
   return list[static_cast<std::size_t>(index)];
-}
-
-inline std::string read_whole_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  require<FileError>(std::filesystem::exists(path, ignored), path.string(), " does not exist: check the name");
-  require<FileError>(!std::filesystem::is_directory(path, ignored), path.string(),
-                     " is a folder: give a .glb or .gltf file");
-  std::ifstream stream(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  require<FileError>(stream.good() || stream.eof(), path.string(), " cannot be read: check its permissions");
-  require<FileError>(!bytes.empty(), path.string(), " is empty: export the animation again");
-  require<FileError>(bytes.size() < std::numeric_limits<std::uint32_t>::max(), path.string(), " has ", bytes.size(),
-                     " bytes, glTF allows 4 GB");
-  return bytes;
 }
 
 inline bool is_glb(std::string_view bytes) { return bytes.substr(0, 4) == "glTF"; }
@@ -143,7 +128,13 @@ inline GltfFile parse_gltf(std::string_view bytes, const std::filesystem::path& 
   return file;
 }
 
-inline GltfFile load_gltf(const std::filesystem::path& path) { return parse_gltf(read_whole_file(path), path); }
+inline GltfFile load_gltf(const std::filesystem::path& path,
+                          tinygltf::LoadImageDataFunction load_image = &ignore_image) {
+  const std::string bytes = read_whole_file(path);
+  require<FileError>(bytes.size() < std::numeric_limits<std::uint32_t>::max(), path.string(), " has ", bytes.size(),
+                     " bytes, glTF allows 4 GB");
+  return parse_gltf(bytes, path, load_image);
+}
 
 /// The bytes of a buffer view from `offset` on.
 inline Bytes view_bytes(const GltfFile& file, int index, std::size_t offset) {

@@ -83,7 +83,7 @@ inline void write_gltf_own_mesh(const std::filesystem::path& path, const std::fi
   namespace g = detail::gltf;
   require(frames.size() >= 2 && options.duration > 0, "write_gltf_own_mesh: ", frames.size(), " frames in ",
           options.duration, " s, give at least 2 and a positive duration");
-  const g::GltfFile file = g::parse_gltf(g::read_whole_file(original), original, &g::keep_image);
+  const g::GltfFile file = g::load_gltf(original, &g::keep_image);
   const g::Hierarchy tree = g::hierarchy(file);
   const std::vector<g::MeshPart> parts = g::read_parts(file, tree, options.node);
   MeshSequence all = g::merged(parts);
