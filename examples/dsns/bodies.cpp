@@ -1,8 +1,9 @@
 #include "bodies.hpp"
 
 #include <dsns/core/spline.hpp>
-#include <dsns/io/gltf_reader.hpp>
-#include <dsns/io/frames.hpp>
+#include <dsns/io/frame_writer.hpp>
+#include <dsns/io/gltf.hpp>
+#include <dsns/io/npy.hpp>
 #include <dsns/io/source_name.hpp>
 #include <dsns/mesh/sampling.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
@@ -12,24 +13,68 @@
 
 namespace dsns::program {
 
-Source read_source(const std::string& name, int frames) {
+namespace {
+
+/// At most so many equidistant frames.
+void thin_out(Source& source, int frames) {
+  std::vector<Mat3X>& all = source.sequence.frames;
+  const auto found = all.size(), wanted = static_cast<std::size_t>(frames);
+  if (found <= wanted) return;
+  std::vector<Mat3X> kept;
+  for (std::size_t k = 0; k < wanted; ++k) kept.push_back(std::move(all[k * (found - 1) / (wanted - 1)]));
+  all = std::move(kept);
+  source.notes.push_back(message("took ", wanted, " of them, see --frames"));
+}
+
+TriangleMesh mesh_with_faces(const std::string& name, const Settings& settings) {
+  require(!settings.faces.empty(), name, " holds vertices alone: name a mesh with their faces, --faces FILE.obj");
+  return read_mesh(settings.faces);
+}
+
+}  // namespace
+
+Source read_source(const std::string& name, const Settings& settings, Still still) {
   const SourceName parsed = parse_source(name);
   Source source;
+  source.file = parsed.file;
+  const double rate = settings.rate > 0 ? settings.rate : 24;
+  const std::string extension = lower_extension(parsed.file);
   if (std::filesystem::is_directory(parsed.file)) {
-    source.sequence = read_obj_sequence(parsed.file);
-    source.notes.push_back(message("read ", source.sequence.frame_count(), " OBJ frames"));
-    return source;
+    source.sequence = frame_files(parsed.file, {".npz"}).empty()
+                          ? read_frames(parsed.file, rate)
+                          : read_npz_frames(parsed.file, mesh_with_faces(name, settings), rate);
+    source.notes.push_back(message("read ", source.sequence.frame_count(), " frames"));
+    thin_out(source, settings.frames);
+  } else if (extension == ".npy") {
+    source.sequence = read_npy(parsed.file, mesh_with_faces(name, settings), rate);
+    source.notes.push_back(message("read ", source.sequence.frame_count(), " frames"));
+    thin_out(source, settings.frames);
+  } else if (still == Still::allowed && (extension == ".obj" || extension == ".off" || extension == ".ply")) {
+    TriangleMesh mesh = read_mesh(parsed.file);
+    source.sequence.faces = std::move(mesh.faces);
+    source.sequence.frames = {std::move(mesh.vertices)};
+    source.sequence.name = parsed.file.stem().string();
+  } else {
+    GltfReadOptions options;
+    options.clip = parsed.clip;
+    options.frames = settings.frames;
+    options.rate = settings.rate;
+    options.node = settings.node;
+    options.allow_still = still == Still::allowed;
+    GltfAnimation animation = read_gltf(parsed.file, options);
+    source.sequence = std::move(animation.sequence);
+    source.clip = animation.clip;
+    const int frames = source.sequence.frame_count();
+    source.notes.push_back(frames == 1 ? std::string("no animation, one frame")
+                                       : message("clip '", animation.clip, "'",
+                                                 animation.clip_chosen_by_default ? " (the first)" : "", ", ", frames,
+                                                 " frames over ", source.sequence.duration, " s"));
   }
-  GltfAnimation animation = read_gltf(parsed.file, {parsed.clip, frames});
-  source.sequence = std::move(animation.sequence);
-  source.clip = animation.clip;
-  source.notes.push_back(message("clip '", animation.clip, "'", animation.clip_chosen_by_default ? " (the first)" : "",
-                                 ", ", frames, " frames over ", source.sequence.duration, " s"));
   return source;
 }
 
 Body load_body(const std::string& name, const Settings& settings, Report& report, const Progress& progress) {
-  const Source source = read_source(name, settings.frames);
+  const Source source = read_source(name, settings);
   const RepairResult repaired = repair(source.sequence);
   NormalizedSequence normalized = normalize(repaired.sequence);
   ParameterizationResult map = spherical_parameterization(normalized.sequence, {}, progress);
@@ -41,7 +86,25 @@ Body load_body(const std::string& name, const Settings& settings, Report& report
                      map.certificate.min_area_ratio));
   const TriangleMesh sphere{map.sphere, normalized.sequence.faces};
   AnyAnimatedSurface surface(SampledSurface(normalized.sequence, map.sphere));
-  return {std::move(normalized), sphere, map.certificate, std::move(surface)};
+  return {std::move(normalized), sphere,      map.certificate,
+          std::move(surface),    source.file, OwnMesh(source.sequence, repaired),
+          source.sequence.faces};
+}
+
+void write_on_own_mesh(const std::filesystem::path& out, const Body& body, const MeshSequence& result,
+                       const Settings& settings) {
+  std::vector<Mat3X> frames;
+  for (const Mat3X& frame : result.frames) frames.push_back(body.own.moved(frame));
+  const std::string extension = lower_extension(out);
+  if (extension == ".npy") return write_npy(out, frames);
+  if (extension == ".glb")
+    return write_gltf_own_mesh(out, body.file, frames, {result.duration, "motion", settings.node});
+  const auto own_frames = std::filesystem::is_directory(body.file) ? frame_files(body.file, {".obj"})
+                                                                   : std::vector<std::filesystem::path>();
+  if (own_frames.empty())
+    write_obj_frames(out, result.name, frames, body.own_faces);
+  else
+    write_obj_frames(out, result.name, frames, own_frames.front());
 }
 
 FitFigures fit_body(Body& body, const Settings& settings, const Progress& progress) {

@@ -6,10 +6,12 @@
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/elastic/spatial_options.hpp>
 #include <dsns/elastic/time_warp.hpp>
+#include <dsns/mesh/own_mesh.hpp>
 #include <dsns/mesh/repair.hpp>
 #include <dsns/mesh/sphere_certificate.hpp>
 #include <dsns/surface/any_surface.hpp>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,9 @@ enum class Representation { sampled, neural };
 /// What all subcommands share.
 struct Settings {
   int frames = 32;
+  double rate = 0;    ///< frames a second; 0: as many as `frames` of a clip, 24 of frame files
+  std::string node;   ///< of a glTF file; empty: the whole scene
+  std::string faces;  ///< mesh with the faces of NumPy arrays
   std::uint64_t seed = 0;
   int threads = 1;
   std::string json;
@@ -32,11 +37,14 @@ struct Settings {
 /// A file's animation before anything is done to it.
 struct Source {
   MeshSequence sequence;
-  std::string clip;
+  std::filesystem::path file;
+  std::string clip;  ///< of a glTF file
   std::vector<std::string> notes;
 };
 
-Source read_source(const std::string& name, int frames);
+enum class Still { refused, allowed };  ///< glTF files without animation, and single mesh files
+
+Source read_source(const std::string& name, const Settings& settings, Still still = Still::refused);
 
 /// A repaired, centred, mapped animation with its surface.
 struct Body {
@@ -44,6 +52,9 @@ struct Body {
   TriangleMesh sphere;  ///< its own triangles with their vertices on the unit sphere
   SphereMapCertificate certificate;
   AnyAnimatedSurface surface;
+  std::filesystem::path file;  ///< where it came from
+  OwnMesh own;                 ///< and how its vertices there hang on those here
+  Faces own_faces;
 };
 
 /// How a network does on points of the faces that it never saw. Lengths in units of the smallest ball around the origin
@@ -60,6 +71,11 @@ Body load_body(const std::string& name, const Settings& settings, Report& report
 
 /// The body with a network for a surface instead of its samples.
 FitFigures fit_body(Body& body, const Settings& settings, const Progress& progress);
+
+/// Writes a sequence on the body's triangles as one on the mesh of its file: a GLB with its materials, a .npy, or a folder of
+/// OBJ frames.
+void write_on_own_mesh(const std::filesystem::path& out, const Body& body, const MeshSequence& result,
+                       const Settings& settings);
 
 /// Frames of a surface at the vertices of a sphere mesh, at equidistant times along a warp.
 std::vector<Mat3X> frames_of(const AnyAnimatedSurface& surface, const Mat3X& sphere, int frames);

@@ -14,12 +14,13 @@ void parameterize(const std::string& source, const std::filesystem::path& out, c
                   Report& report);
 /// Fits a network to the body, which then is the network. `out` may be empty: nothing is written; likewise below.
 void fit(Body& body, const std::filesystem::path& out, const Settings& settings, Report& report);
-void register_two(const Body& first, const Body& second, const std::filesystem::path& out, const Settings& settings,
-                  Report& report);
+/// `own`: where to write the result on the first one's own mesh, or empty; likewise below.
+void register_two(const Body& first, const Body& second, const std::filesystem::path& out,
+                  const std::filesystem::path& own, const Settings& settings, Report& report);
 void geodesic(const Body& first, const Body& second, const std::filesystem::path& out, int steps,
               const Settings& settings, Report& report);
 void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, const std::filesystem::path& overview,
-          const Settings& settings, Report& report);
+          const std::filesystem::path& own, const Settings& settings, Report& report);
 /// The whole chain into a folder. With no sources, makes three bodies first.
 void demo(std::vector<std::string> sources, const std::filesystem::path& folder, const Settings& settings,
           Report& report);

@@ -75,13 +75,13 @@ void demo(std::vector<std::string> sources, const std::filesystem::path& folder,
   }
   report.say("\nThe second registered to the first:");
   report.section("register");
-  register_two(bodies[0], bodies[1], folder / "registered.glb", settings, report);
+  register_two(bodies[0], bodies[1], folder / "registered.glb", {}, settings, report);
   report.say("\nGeodesic from the first to the second:");
   report.section("geodesic");
   geodesic(bodies[0], bodies[1], folder / "geodesic.glb", 5, settings, report);
   report.say("\nThe mean of all:");
   report.section("mean");
-  mean(bodies, folder / "mean.glb", folder / "overview.glb", settings, report);
+  mean(bodies, folder / "mean.glb", folder / "overview.glb", {}, settings, report);
 }
 
 }  // namespace dsns::program

@@ -2,6 +2,8 @@
 #include "commands.hpp"
 
 #include <dsns/core/errors.hpp>
+#include <dsns/io/frames.hpp>
+#include <dsns/io/source_name.hpp>
 #include <dsns/version.hpp>
 
 #include <CLI/CLI.hpp>
@@ -22,6 +24,10 @@ void add_common(CLI::App* command, Settings& settings) {
   command->add_option("--frames", settings.frames, "equidistant frames read from a clip")
       ->capture_default_str()
       ->check(CLI::Range(2, 1000));
+  command->add_option("--rate", settings.rate, "frames a second: of a clip, instead of --frames; of frame files (24)")
+      ->check(CLI::Range(0.0, 1e5));
+  command->add_option("--node", settings.node, "of a glTF file, only the meshes at this node and below it");
+  command->add_option("--faces", settings.faces, "mesh file with the faces of .npy and .npz vertices");
   command->add_option("--threads", settings.threads, "threads to use")
       ->capture_default_str()
       ->check(CLI::Range(1, 256));
@@ -105,6 +111,18 @@ void check_output(const std::string& path, const std::string& extension) {
                                  ": name it *", extension);
 }
 
+/// Likewise for a result on the first file's own mesh.
+void check_own_mesh(const std::string& path, const std::string& source) {
+  if (path.empty()) return;
+  const std::string extension = dsns::lower_extension(path);
+  const std::string first = dsns::lower_extension(dsns::parse_source(source).file);
+  dsns::require<dsns::FileError>(extension.empty() || extension == ".npy" || extension == ".glb", "cannot write ", path,
+                                 ": name a .glb, a .npy or a folder");
+  dsns::require<dsns::FileError>(extension != ".glb" || first == ".glb" || first == ".gltf", "cannot write ", path,
+                                 ": ", source, " is no glTF file to take materials from; name a .npy or a folder");
+  if (!extension.empty()) check_output(path, "");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -112,7 +130,7 @@ int main(int argc, char** argv) {
   settings.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   Report report;
   std::vector<std::string> sources;
-  std::string out, overview;
+  std::string out, overview, own;
   int steps = 5;
 
   CLI::App app{"Elastic analysis of moving surfaces: registered sequences, geodesics and means of animations."};
@@ -120,18 +138,26 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "FILE is a GLB or glTF animation, FILE#Clip one of its clips (full name, or the part after the last '|'),\n"
-      "or a folder of OBJ frames. Try: dsns demo -o demo");
+      "a folder of OBJ, OFF or PLY frames, or of .npz frames, or a .npy array (these two with --faces).\n"
+      "Try: dsns demo -o demo");
   const auto command = [&](const std::string& name, const std::string& what, auto run) {
     CLI::App* sub = app.add_subcommand(name, what);
     sub->callback([&, run, name] {
       check_output(settings.json, "");
       if (name != "demo") check_output(out, ".glb");
       check_output(overview, ".glb");
+      check_own_mesh(own, sources.empty() ? "" : sources.front());
       run();
       report.save(settings.json);
     });
     add_common(sub, settings);
     return sub;
+  };
+
+  const auto add_own_mesh = [&](CLI::App* sub) {
+    sub->add_option(
+        "--own-mesh", own,
+        "write the result on the first file's own mesh: a GLB with its materials, a .npy or a folder for OBJ frames");
   };
 
   CLI::App* inspect_command = command("inspect", "what an animation holds and whether it can be used",
@@ -155,10 +181,11 @@ int main(int argc, char** argv) {
   CLI::App* register_command =
       command("register", "bring the second animation into correspondence with the first", [&] {
         const std::vector<Body> bodies = load(sources, settings, report);
-        register_two(bodies[0], bodies[1], out, settings, report);
+        register_two(bodies[0], bodies[1], out, own, settings, report);
       });
   register_command->add_option("FILES", sources, "two animations")->required()->expected(2);
   register_command->add_option("-o,--output", out, "write both and the registered second to this GLB");
+  add_own_mesh(register_command);
   add_registration(register_command, settings);
 
   CLI::App* geodesic_command = command("geodesic", "the way from one animation to another, and their distance", [&] {
@@ -172,13 +199,15 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(2, 50));
   add_registration(geodesic_command, settings);
 
-  CLI::App* mean_command = command("mean", "the mean of animations",
-                                   [&] { mean(load(sources, settings, report), out, overview, settings, report); });
+  CLI::App* mean_command = command("mean", "the mean of animations", [&] {
+    mean(load(sources, settings, report), out, overview, own, settings, report);
+  });
   mean_command->add_option("FILES", sources, "two animations or more; the first gives the triangles")
       ->required()
       ->expected(2, 1000);
   mean_command->add_option("-o,--output", out, "write the mean to this GLB");
   mean_command->add_option("--overview", overview, "write all, registered, with the mean last, to this GLB");
+  add_own_mesh(mean_command);
   add_registration(mean_command, settings);
 
   CLI::App* demo_command = command("demo", "the whole chain; without files, on three bodies that it makes",

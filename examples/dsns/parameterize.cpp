@@ -9,7 +9,7 @@
 namespace dsns::program {
 
 void parameterize(const std::string& name, const std::filesystem::path& out, const Settings& settings, Report& report) {
-  const Source source = read_source(name, settings.frames);
+  const Source source = read_source(name, settings, Still::allowed);
   const RepairResult repaired = repair(source.sequence);
   const MeshSequence& sequence = repaired.sequence;
   report.say(name + ":");
@@ -33,6 +33,7 @@ void parameterize(const std::string& name, const std::filesystem::path& out, con
   report.figure("worst_frame_min_area_ratio", "smallest in any one frame", ratios.worst_frame_least);
   report.figure("seconds", "seconds", seconds);
   if (out.empty()) return;
+  require<UnusableMesh>(sequence.frame_count() > 1, name, " is one frame and not an animation to write: leave -o out");
 
   // The body, and beside it its sphere, as large and in the same colours, turning so that all of it is seen.
   MeshSequence sphere = sequence;

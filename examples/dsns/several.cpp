@@ -78,14 +78,18 @@ double mix(double a, double b, double tau) { return (1 - tau) * a + tau * b; }
 
 }  // namespace
 
-void register_two(const Body& a, const Body& b, const std::filesystem::path& out, const Settings& settings,
-                  Report& report) {
+void register_two(const Body& a, const Body& b, const std::filesystem::path& out, const std::filesystem::path& own,
+                  const Settings& settings, Report& report) {
   ProgressLine line;
   const MovingRegistration r =
       register_moving(a.surface, b.surface, a.sphere, registration_options(a, settings), std::ref(line));
   report_registration(r, report);
   say_units(report);
-  if (out.empty()) return say_not_written(report);
+  if (!own.empty()) {
+    write_on_own_mesh(own, a, registered(b, r, a.sphere, settings.frames), settings);
+    report.wrote("own_mesh", own);
+  }
+  if (out.empty()) return own.empty() ? say_not_written(report) : void();
   Scene scene;
   const Mat3X colors = place_colors(a, a.sphere.vertices);
   scene.add(as_represented(a, settings.frames), colors);
@@ -146,7 +150,7 @@ void geodesic(const Body& a, const Body& b, const std::filesystem::path& out, in
 }
 
 void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, const std::filesystem::path& overview,
-          const Settings& settings, Report& report) {
+          const std::filesystem::path& own, const Settings& settings, Report& report) {
   ProgressLine line;
   MovingMeanOptions options;
   options.registration = registration_options(bodies.front(), settings);
@@ -171,7 +175,8 @@ void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, con
   report.figure("min_slope", "smallest slope of the time warps", summary.min_slope);
   report.figure("converged", "converged", summary.converged);
   say_units(report);
-  if (out.empty() && overview.empty()) return say_not_written(report, "-o FILE.glb or --overview FILE.glb");
+  if (out.empty() && overview.empty() && own.empty())
+    return say_not_written(report, "-o FILE.glb or --overview FILE.glb");
 
   Scene all;
   const Mat3X colors = place_colors(bodies.front(), sphere.vertices);
@@ -192,6 +197,10 @@ void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, con
     alone.add(result);
     alone.write(out);
     report.wrote("mean", out);
+  }
+  if (!own.empty()) {
+    write_on_own_mesh(own, bodies.front(), result, settings);
+    report.wrote("own_mesh", own);
   }
   if (overview.empty()) return;
   all.add(result, colors);

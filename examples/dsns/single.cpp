@@ -9,7 +9,7 @@
 namespace dsns::program {
 
 void inspect(const std::string& name, const Settings& settings, Report& report) {
-  const Source source = read_source(name, settings.frames);
+  const Source source = read_source(name, settings, Still::allowed);
   const MeshSequence& raw = source.sequence;
   report.say(name + ":");
   for (const auto& note : source.notes) report.say("  " + note);

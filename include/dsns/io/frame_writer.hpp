@@ -4,6 +4,7 @@
 #include <dsns/core/types.hpp>
 #include <dsns/io/atomic_file.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <filesystem>
@@ -49,6 +50,26 @@ inline std::string obj_vertex(const Vec3d& p) {
   return line.str();
 }
 
+inline void write_obj_frames(const std::filesystem::path& folder, const std::string& name,
+                             const std::vector<Mat3X>& frames, const ObjTemplate& form) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  require<FileError>(std::filesystem::is_directory(folder), "folder '", folder.string(),
+                     "' cannot be made: ", failure.message());
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    std::string text;
+    std::size_t vertex = 0;
+    for (std::size_t i = 0; i < form.lines.size(); ++i) {
+      const bool is_vertex = vertex < form.vertex_lines.size() && form.vertex_lines[vertex] == i;
+      text += is_vertex ? obj_vertex(frames[k].col(static_cast<Index>(vertex++))) : form.lines[i];
+      text += '\n';
+    }
+    std::string number = std::to_string(k + 1);
+    number.insert(0, 6 - std::min<std::size_t>(6, number.size()), '0');
+    write_file_atomically(folder / (name + "." + number + ".obj"), text);
+  }
+}
+
 }  // namespace detail
 
 /// Writes folder/NAME.000001.obj and so on: each the file `like` with other vertices; its faces, texture coordinates and
@@ -60,22 +81,19 @@ inline void write_obj_frames(const std::filesystem::path& folder, const std::str
   const detail::ObjTemplate form = detail::read_obj_template(like);
   require(static_cast<Index>(form.vertex_lines.size()) == frames.front().cols(),
           "write_obj_frames: ", frames.front().cols(), " vertices, ", like.string(), " has ", form.vertex_lines.size());
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  require<FileError>(std::filesystem::is_directory(folder), "folder '", folder.string(),
-                     "' cannot be made: ", failure.message());
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    std::string text;
-    std::size_t vertex = 0;
-    for (std::size_t i = 0; i < form.lines.size(); ++i) {
-      const bool is_vertex = vertex < form.vertex_lines.size() && form.vertex_lines[vertex] == i;
-      text += is_vertex ? detail::obj_vertex(frames[k].col(static_cast<Index>(vertex++))) : form.lines[i];
-      text += '\n';
-    }
-    std::string number = std::to_string(k + 1);
-    number.insert(0, 6 - std::min<std::size_t>(6, number.size()), '0');
-    write_file_atomically(folder / (name + "." + number + ".obj"), text);
-  }
+  detail::write_obj_frames(folder, name, frames, form);
+}
+
+/// The same with nothing but faces.
+inline void write_obj_frames(const std::filesystem::path& folder, const std::string& name,
+                             const std::vector<Mat3X>& frames, const Faces& faces) {
+  detail::check_frames("write_obj_frames", frames);
+  detail::ObjTemplate form;
+  for (Index v = 0; v < frames.front().cols(); ++v) form.vertex_lines.push_back(std::size_t(v));
+  form.lines.resize(form.vertex_lines.size());
+  for (Index f = 0; f < faces.cols(); ++f)
+    form.lines.push_back(message("f ", faces(0, f) + 1, " ", faces(1, f) + 1, " ", faces(2, f) + 1));
+  detail::write_obj_frames(folder, name, frames, form);
 }
 
 /// Writes a float32 array of shape (frames, vertices, 3) that numpy.load reads.

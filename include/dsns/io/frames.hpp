@@ -40,6 +40,9 @@ inline bool natural_less(std::string_view a, std::string_view b) {
   return a.empty() != b.empty() ? a.empty() : whole_a < whole_b;
 }
 
+}  // namespace detail
+
+/// The extension of a file name with its dot, in small letters.
 inline std::string lower_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -63,7 +66,7 @@ inline std::vector<std::filesystem::path> frame_files(const std::filesystem::pat
   }
   require<FileError>(!failure, folder.string(), " cannot be read as a folder: ", failure.message());
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return natural_less(a.filename().string(), b.filename().string());
+    return detail::natural_less(a.filename().string(), b.filename().string());
   });
   for (const fs::path& path : files)
     require<FileError>(lower_extension(path) == lower_extension(files.front()), folder.string(), " holds ",
@@ -72,12 +75,10 @@ inline std::vector<std::filesystem::path> frame_files(const std::filesystem::pat
   return files;
 }
 
-}  // namespace detail
-
 /// A mesh by its file's extension: .obj, .off or .ply.
 /// throws   FileError
 inline TriangleMesh read_mesh(const std::filesystem::path& path) {
-  const std::string extension = detail::lower_extension(path);
+  const std::string extension = lower_extension(path);
   if (extension == ".obj") return read_obj(path);
   if (extension == ".off") return read_off(path);
   require<FileError>(extension == ".ply", path.string(), ": '", extension,
@@ -90,7 +91,7 @@ inline TriangleMesh read_mesh(const std::filesystem::path& path) {
 /// throws   FileError where there are fewer than two frames or a frame's faces differ from the first one's
 inline MeshSequence read_frames(const std::filesystem::path& folder, double rate = 24) {
   require(rate > 0, "read_frames: ", rate, " frames a second, give a positive rate");
-  const auto files = detail::frame_files(folder, {".obj", ".off", ".ply"});
+  const auto files = frame_files(folder, {".obj", ".off", ".ply"});
   require<FileError>(files.size() >= 2, folder.string(), " holds ", files.size(),
                      " OBJ, OFF or PLY files, an animation needs at least 2");
   MeshSequence sequence;

@@ -111,26 +111,29 @@ inline void write_gltf_own_mesh(const std::filesystem::path& path, const std::fi
   tinygltf::Animation animation;
   animation.name = options.clip;
   Index begin = 0;
-  for (const auto& part : parts) {
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const g::MeshPart& part = parts[p];
     const Index n = part.points.cols();
+    if (p == 0 || parts[p - 1].node != part.node) {  // the primitives of one node stay together
+      tinygltf::Node node;
+      node.name = file.model.nodes[part.node].name;
+      node.mesh = static_cast<int>(builder.model.meshes.size());
+      const int index = static_cast<int>(builder.model.nodes.size());
+      builder.model.nodes.push_back(std::move(node));
+      builder.model.scenes.front().nodes.push_back(index);
+      tinygltf::Mesh& mesh = builder.model.meshes.emplace_back();
+      mesh.name = file.model.nodes[part.node].name;
+      mesh.weights.assign(frames.size() - 1, 0.0);
+      g::append_motion(builder, animation, index, static_cast<int>(frames.size()), options.duration);
+    }
     const g::Mat3Xf points = frames.front().middleCols(begin, n).cast<float>();
-    tinygltf::Mesh mesh;
-    tinygltf::Node node;
-    mesh.name = node.name = file.model.nodes[part.node].name;
-    auto& primitive = mesh.primitives.emplace_back(g::without_shape(*part.primitive));
+    auto& primitive = builder.model.meshes.back().primitives.emplace_back(g::without_shape(*part.primitive));
     primitive.attributes["POSITION"] = builder.append_vectors(points);
     primitive.attributes["NORMAL"] = builder.append_vectors(normals[0].middleCols(begin, n));
     for (std::size_t k = 1; k < frames.size(); ++k)
       primitive.targets.push_back(
           {{"POSITION", builder.append_vectors((frames[k].middleCols(begin, n) - points.cast<double>()).cast<float>())},
            {"NORMAL", builder.append_vectors((normals[k] - normals[0]).middleCols(begin, n))}});
-    mesh.weights.assign(primitive.targets.size(), 0.0);
-    node.mesh = static_cast<int>(builder.model.meshes.size());
-    const int index = static_cast<int>(builder.model.nodes.size());
-    builder.model.meshes.push_back(std::move(mesh));
-    builder.model.nodes.push_back(std::move(node));
-    builder.model.scenes.front().nodes.push_back(index);
-    g::append_motion(builder, animation, index, static_cast<int>(frames.size()), options.duration);
     require<FileError>(builder.size() < std::numeric_limits<std::int32_t>::max(), path.string(),
                        " would exceed 2 GB: write fewer frames");
     begin += n;

@@ -184,7 +184,7 @@ inline MeshSequence read_npy(const std::filesystem::path& path, const TriangleMe
 /// throws   FileError
 inline MeshSequence read_npz_frames(const std::filesystem::path& folder, const TriangleMesh& mesh, double rate = 24) {
   require(rate > 0, "read_npz_frames: ", rate, " frames a second, give a positive rate");
-  const auto files = detail::frame_files(folder, {".npz"});
+  const auto files = frame_files(folder, {".npz"});
   require<FileError>(files.size() >= 2, folder.string(), " holds ", files.size(),
                      " .npz files, an animation needs at least 2");
   MeshSequence sequence;

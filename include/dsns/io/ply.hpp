@@ -15,7 +15,9 @@ namespace detail {
 
 class PlyReader {
  public:
-  explicit PlyReader(const std::filesystem::path& path) : path_(path), bytes_(read_whole_file(path)), rest_(bytes_) {}
+  /// `path` is what messages call the bytes.
+  PlyReader(std::string_view bytes, const std::filesystem::path& path)
+      : path_(path), size_(bytes.size()), rest_(bytes) {}
 
   TriangleMesh read() {
     read_header();
@@ -97,8 +99,8 @@ class PlyReader {
         const std::string_view name = next_word(line);
         element.is_vertex = name == "vertex";
         element.is_face = name == "face";
-        check(parse_number(next_word(line), element.count) && element.count <= bytes_.size(), "element '",
-              name.substr(0, 30), "' claims more entries than the file has bytes: it is damaged, export it again");
+        check(parse_number(next_word(line), element.count) && element.count <= size_, "element '", name.substr(0, 30),
+              "' claims more entries than the file has bytes: it is damaged, export it again");
         elements_.push_back(std::move(element));
       } else if (keyword == "property") {
         check(!elements_.empty(), "a property before the first element: export the file again");
@@ -163,7 +165,7 @@ class PlyReader {
   }
 
   std::filesystem::path path_;
-  std::string bytes_;
+  std::size_t size_;
   std::string_view rest_;
   std::vector<Element> elements_;
   bool text_ = false;
@@ -174,6 +176,8 @@ class PlyReader {
 
 /// Vertices and faces of a PLY file; polygons become fans of triangles, other elements and properties are passed over.
 /// throws   FileError that names the file and what is wrong with it
-inline TriangleMesh read_ply(const std::filesystem::path& path) { return detail::PlyReader(path).read(); }
+inline TriangleMesh read_ply(const std::filesystem::path& path) {
+  return detail::PlyReader(detail::read_whole_file(path), path).read();
+}
 
 }  // namespace dsns
