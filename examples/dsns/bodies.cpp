@@ -3,6 +3,9 @@
 #include <dsns/core/spline.hpp>
 #include <dsns/io/frame_writer.hpp>
 #include <dsns/io/gltf.hpp>
+#if defined(DSNS_WITH_HDF5)
+#include <dsns/io/hdf5.hpp>
+#endif
 #include <dsns/io/npy.hpp>
 #include <dsns/io/source_name.hpp>
 #include <dsns/mesh/sampling.hpp>
@@ -31,6 +34,19 @@ TriangleMesh mesh_with_faces(const std::string& name, const Settings& settings) 
   return read_mesh(settings.faces);
 }
 
+/// DFAUST's sequences by name, or MATLAB's grids.
+MeshSequence read_hdf5([[maybe_unused]] const SourceName& source, [[maybe_unused]] const Settings& settings) {
+#if defined(DSNS_WITH_HDF5)
+  if (lower_extension(source.file) == ".mat")
+    return read_matlab_grids(source.file, settings.rate > 0 ? settings.rate : 24);
+  return read_dfaust(source.file, source.clip, settings.rate > 0 ? settings.rate : 60);
+#else
+  throw FileError(message(source.file.string(),
+                          ": this program was built without HDF5; install it (Debian: libhdf5-dev) and "
+                          "build again"));
+#endif
+}
+
 }  // namespace
 
 Source read_source(const std::string& name, const Settings& settings, Still still) {
@@ -47,6 +63,10 @@ Source read_source(const std::string& name, const Settings& settings, Still stil
     thin_out(source, settings.frames);
   } else if (extension == ".npy") {
     source.sequence = read_npy(parsed.file, mesh_with_faces(name, settings), rate);
+    source.notes.push_back(message("read ", source.sequence.frame_count(), " frames"));
+    thin_out(source, settings.frames);
+  } else if (extension == ".hdf5" || extension == ".h5" || extension == ".mat") {
+    source.sequence = read_hdf5(parsed, settings);
     source.notes.push_back(message("read ", source.sequence.frame_count(), " frames"));
     thin_out(source, settings.frames);
   } else if (still == Still::allowed && (extension == ".obj" || extension == ".off" || extension == ".ply")) {

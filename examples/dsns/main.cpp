@@ -138,7 +138,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "FILE is a GLB or glTF animation, FILE#Clip one of its clips (full name, or the part after the last '|'),\n"
-      "a folder of OBJ, OFF or PLY frames, or of .npz frames, or a .npy array (these two with --faces).\n"
+      "a folder of OBJ, OFF or PLY frames, or of .npz frames, or a .npy array (these two with --faces),\n"
+      "FILE.hdf5#SEQUENCE of DFAUST, or a .mat file (-v7.3) of grids Surface{t}.Mall.\n"
       "Try: dsns demo -o demo");
   const auto command = [&](const std::string& name, const std::string& what, auto run) {
     CLI::App* sub = app.add_subcommand(name, what);
