@@ -95,7 +95,7 @@ Source read_source(const std::string& name, const Settings& settings, Still stil
 
 Body load_body(const std::string& name, const Settings& settings, Report& report, const Progress& progress) {
   const Source source = read_source(name, settings);
-  const RepairResult repaired = repair(source.sequence);
+  const RepairResult repaired = repair(source.sequence, settings.repair);
   NormalizedSequence normalized = normalize(repaired.sequence);
   ParameterizationResult map = spherical_parameterization(normalized.sequence, {}, progress);
   report.say(name + ":");

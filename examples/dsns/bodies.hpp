@@ -25,6 +25,7 @@ struct Settings {
   double rate = 0;    ///< frames a second; 0: as many as `frames` of a clip, 24 of frame files
   std::string node;   ///< of a glTF file; empty: the whole scene
   std::string faces;  ///< mesh with the faces of NumPy arrays
+  RepairOptions repair;
   std::uint64_t seed = 0;
   int threads = 1;
   std::string json;

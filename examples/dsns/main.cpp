@@ -28,6 +28,8 @@ void add_common(CLI::App* command, Settings& settings) {
       ->check(CLI::Range(0.0, 1e5));
   command->add_option("--node", settings.node, "of a glTF file, only the meshes at this node and below it");
   command->add_option("--faces", settings.faces, "mesh file with the faces of .npy and .npz vertices");
+  command->add_option("--piece", settings.repair.piece, "of a mesh in pieces, the one that counts: 1 for the largest")
+      ->check(CLI::Range(1, 1000));
   command->add_option("--threads", settings.threads, "threads to use")
       ->capture_default_str()
       ->check(CLI::Range(1, 256));

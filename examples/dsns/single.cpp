@@ -27,7 +27,7 @@ void inspect(const std::string& name, const Settings& settings, Report& report) 
   std::string reason;
   try {
     d = diagnose_welded(raw);
-    actions = repair(raw).actions;
+    actions = repair(raw, settings.repair).actions;
   } catch (const UnusableMesh& unusable) {
     reason = unusable.what();
   }

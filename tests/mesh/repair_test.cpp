@@ -113,6 +113,16 @@ TEST_CASE("small pieces are dropped, comparable ones refused", "[mesh]") {
   const auto twins = test::growing(test::joined(scaled(sphere, 0.5), sphere));  // area ratio 0.25
   CHECK(contains(refusal(twins), "2 loose pieces, the two largest with 80 % and 20 % of the area"));
   CHECK(repair(twins, {1e-6, 4, 0.3}).after.vertices == 162);
+  RepairOptions choice;
+  choice.piece = 1;
+  CHECK(repair(twins, choice).source_vertex.front() == 162);
+  choice.piece = 2;
+  CHECK(repair(twins, choice).source_vertex.front() == 0);
+  CHECK(repair(twins, choice).actions.front() == "dropped 1 loose piece with 80 % of the area");
+  choice.piece = 3;
+  CHECK(contains(test::complaint<UnusableMesh>([&] { repair(twins, choice); }), "no piece 3, only 2 of them"));
+  choice.piece = -1;
+  CHECK_THROWS_AS(repair(twins, choice), InvalidArgument);
 }
 
 TEST_CASE("pieces are compared by their area over all frames", "[mesh]") {
@@ -231,6 +241,24 @@ TEST_CASE("what is no mesh at all", "[mesh]") {
   broken.faces(0, 0) = 42;
   CHECK_THROWS_AS(repair(broken), InvalidArgument);
   CHECK_THROWS_AS(repair(MeshSequence{}), InvalidArgument);
+}
+
+TEST_CASE("handles are counted and refused, a slab without a hole is not", "[mesh]") {
+  const auto sequence = [](int holes) {
+    MeshSequence still;
+    const TriangleMesh slab = test::slab_with_holes(holes);
+    still.frames = {slab.vertices};
+    still.faces = slab.faces;
+    still.name = "slab";
+    return still;
+  };
+  CHECK(repair(sequence(0)).after.genus == 0);
+  for (int genus = 1; genus <= 4; ++genus) {
+    CHECK(diagnose_welded(sequence(genus)).genus == genus);
+    const auto said = test::complaint<UnusableMesh>([&] { repair(sequence(genus)); });
+    CHECK(said.find("genus " + std::to_string(genus)) != std::string::npos);
+    CHECK(test::is_one_sentence(said));
+  }
 }
 
 }  // namespace repair_test

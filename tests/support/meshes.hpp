@@ -56,4 +56,34 @@ inline MeshSequence growing(const TriangleMesh& mesh, int frames = 3, double gro
   return sequence;
 }
 
+/// A slab with `holes` square holes through it: genus = holes. Built of unit cubes, whose outer sides are split in two.
+inline TriangleMesh slab_with_holes(int holes) {
+  const auto solid = [&](int x, int y, int z) {
+    const bool inside = x >= 0 && x < 2 * holes + 1 && y >= 0 && y < 3 && z == 0;
+    return inside && !(x % 2 == 1 && y == 1);
+  };
+  const int nx = 2 * holes + 2, ny = 4;
+  const auto corner = [&](int x, int y, int z) { return x + nx * (y + ny * z); };
+  TriangleMesh mesh{Mat3X(3, nx * ny * 2), Faces(3, 0)};
+  for (int z = 0; z < 2; ++z)
+    for (int y = 0; y < ny; ++y)
+      for (int x = 0; x < nx; ++x) mesh.vertices.col(corner(x, y, z)) << x, y, z;
+  const auto add = [&](int a, int b, int c, int d) {
+    mesh.faces.conservativeResize(3, mesh.faces.cols() + 2);
+    mesh.faces.rightCols<2>() << a, a, b, c, c, d;
+  };
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 2 * holes + 1; ++x) {
+      if (!solid(x, y, 0)) continue;
+      const auto at = [&](int i, int j, int k) { return corner(x + i, y + j, k); };
+      add(at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1));
+      add(at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0));
+      if (!solid(x - 1, y, 0)) add(at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0));
+      if (!solid(x + 1, y, 0)) add(at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1));
+      if (!solid(x, y - 1, 0)) add(at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1));
+      if (!solid(x, y + 1, 0)) add(at(0, 1, 0), at(0, 1, 1), at(1, 1, 1), at(1, 1, 0));
+    }
+  return mesh;
+}
+
 }  // namespace dsns::test

@@ -21,6 +21,7 @@ struct RepairOptions {
   double weld_tolerance = 1e-6;    ///< relative to the bounding-box diagonal
   int weld_frames = 4;             ///< frames in which vertices must coincide to be welded
   double loose_piece_limit = 0.2;  ///< largest area of a piece that is dropped, as a share of the kept one's
+  int piece = 0;                   ///< the piece to keep, 1 for the largest; 0: the largest, if the others are small
 };
 
 struct RepairResult {
@@ -66,16 +67,20 @@ inline FaceSelection welded_faces(const Faces& faces, const std::vector<Index>& 
   return kept;
 }
 
-/// The piece with the largest area, averaged over all frames.
-/// throws   UnusableMesh where the second largest is more than options.loose_piece_limit of it
-inline FaceSelection largest_piece(const MeshSequence& sequence, const FaceSelection& all, const RepairOptions& options,
-                                   std::vector<std::string>& actions) {
+/// The chosen piece, by area averaged over all frames.
+/// throws   UnusableMesh where none is chosen and the second largest is more than options.loose_piece_limit of the
+///          largest, or there are fewer pieces than that
+inline FaceSelection chosen_piece(const MeshSequence& sequence, const FaceSelection& all, const RepairOptions& options,
+                                  std::vector<std::string>& actions) {
   const Faces& faces = all.faces;
   auto pieces = face_pieces(sorted_sides(faces), faces.cols());
   Eigen::VectorXd face_areas = Eigen::VectorXd::Zero(faces.cols());
   for (const Mat3X& frame : sequence.frames) face_areas += face_normals(frame, faces).colwise().norm().transpose();
   std::map<Index, double> area_of;
   for (Index f = 0; f < faces.cols(); ++f) area_of[pieces.find(f)] += face_areas[f];
+  require(options.piece >= 0, "RepairOptions: piece ", options.piece, ", give 1 for the largest and so on, or 0");
+  require<UnusableMesh>(options.piece <= int(area_of.size()), sequence.name, ": there is no piece ", options.piece,
+                        ", only ", area_of.size(), " of them");
   if (area_of.size() == 1) return all;
 
   std::vector<std::pair<double, Index>> ranking;
@@ -83,15 +88,17 @@ inline FaceSelection largest_piece(const MeshSequence& sequence, const FaceSelec
   std::sort(ranking.begin(), ranking.end());
   const double whole = face_areas.sum(), largest = -ranking[0].first, second = -ranking[1].first;
   const auto percent = [&](double area) { return std::round(1000 * area / whole) / 10; };
-  require<UnusableMesh>(second <= options.loose_piece_limit * largest, sequence.name, ": ", ranking.size(),
-                        " loose pieces, the two largest with ", percent(largest), " % and ", percent(second),
-                        " % of the area: join them or delete all but one");
+  require<UnusableMesh>(options.piece > 0 || second <= options.loose_piece_limit * largest, sequence.name, ": ",
+                        ranking.size(), " loose pieces, the two largest with ", percent(largest), " % and ",
+                        percent(second),
+                        " % of the area: join them, delete all but one, or say which one counts (piece 1, 2, ...)");
+  const std::size_t rank = options.piece > 0 ? std::size_t(options.piece) - 1 : 0;
   actions.push_back(message("dropped ", counted(Index(ranking.size()) - 1, "loose piece"), " with ",
-                            percent(whole - largest), " % of the area"));
+                            percent(whole + ranking[rank].first), " % of the area"));
   FaceSelection kept;
   std::vector<Index> chosen;
   for (Index f = 0; f < faces.cols(); ++f)
-    if (pieces.find(f) == ranking[0].second) chosen.push_back(f);
+    if (pieces.find(f) == ranking[rank].second) chosen.push_back(f);
   kept.faces = faces(Eigen::all, chosen);
   for (const Index f : chosen) kept.source.push_back(all.source[static_cast<std::size_t>(f)]);
   return kept;
@@ -139,7 +146,7 @@ inline MeshDiagnosis diagnose_welded(const MeshSequence& raw, const RepairOption
   return diagnose(detail::welded_faces(raw.faces, first).faces, raw.vertex_count());
 }
 
-/// Welds coincident vertices, drops degenerate and duplicate faces, keeps the largest piece, parts it where it touches
+/// Welds coincident vertices, drops degenerate and duplicate faces, keeps one piece, parts it where it touches
 /// itself in a vertex, orients it outwards (positive mean volume) and caps holes: the caps are the trailing cap_faces.
 /// throws   UnusableMesh in one sentence: pieces of comparable size, edges with three faces, one-sided, handles
 inline RepairResult repair(const MeshSequence& raw, const RepairOptions& options = {}) {
@@ -156,7 +163,7 @@ inline RepairResult repair(const MeshSequence& raw, const RepairOptions& options
     result.actions.push_back("dropped " +
                              detail::counted(raw.faces.cols() - kept.faces.cols(), "degenerate or duplicate face"));
 
-  kept = detail::largest_piece(raw, kept, options, result.actions);
+  kept = detail::chosen_piece(raw, kept, options, result.actions);
   const Faces turned = detail::oriented(kept.faces, raw.name);
   if (turned != kept.faces) result.actions.emplace_back("turned faces to agree with their neighbours");
   auto split = detail::one_vertex_per_fan(turned);
