@@ -8,6 +8,7 @@
 #endif
 #include <dsns/io/npy.hpp>
 #include <dsns/io/source_name.hpp>
+#include <dsns/mesh/join_pieces.hpp>
 #include <dsns/mesh/sampling.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
 #include <dsns/nn/fit.hpp>
@@ -93,9 +94,13 @@ Source read_source(const std::string& name, const Settings& settings, Still stil
   return source;
 }
 
+RepairResult repaired_surface(const MeshSequence& sequence, const Settings& settings) {
+  return settings.join ? repair_joined(sequence, settings.repair) : repair(sequence, settings.repair);
+}
+
 Body load_body(const std::string& name, const Settings& settings, Report& report, const Progress& progress) {
   const Source source = read_source(name, settings);
-  const RepairResult repaired = repair(source.sequence, settings.repair);
+  const RepairResult repaired = repaired_surface(source.sequence, settings);
   NormalizedSequence normalized = normalize(repaired.sequence);
   ParameterizationResult map = spherical_parameterization(normalized.sequence, {}, progress);
   report.say(name + ":");

@@ -26,6 +26,7 @@ struct Settings {
   std::string node;   ///< of a glTF file; empty: the whole scene
   std::string faces;  ///< mesh with the faces of NumPy arrays
   RepairOptions repair;
+  bool join = false;  ///< comparable pieces
   std::uint64_t seed = 0;
   int threads = 1;
   std::string json;
@@ -46,6 +47,9 @@ struct Source {
 enum class Still { refused, allowed };  ///< glTF files without animation, and single mesh files
 
 Source read_source(const std::string& name, const Settings& settings, Still still = Still::refused);
+
+/// One closed surface, with what the settings say of pieces.
+RepairResult repaired_surface(const MeshSequence& sequence, const Settings& settings);
 
 /// A repaired, centred, mapped animation with its surface.
 struct Body {

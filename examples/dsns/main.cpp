@@ -30,6 +30,7 @@ void add_common(CLI::App* command, Settings& settings) {
   command->add_option("--faces", settings.faces, "mesh file with the faces of .npy and .npz vertices");
   command->add_option("--piece", settings.repair.piece, "of a mesh in pieces, the one that counts: 1 for the largest")
       ->check(CLI::Range(1, 1000));
+  command->add_flag("--join", settings.join, "join comparable pieces by tubes")->excludes("--piece");
   command->add_option("--threads", settings.threads, "threads to use")
       ->capture_default_str()
       ->check(CLI::Range(1, 256));

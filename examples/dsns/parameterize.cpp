@@ -10,7 +10,7 @@ namespace dsns::program {
 
 void parameterize(const std::string& name, const std::filesystem::path& out, const Settings& settings, Report& report) {
   const Source source = read_source(name, settings, Still::allowed);
-  const RepairResult repaired = repair(source.sequence, settings.repair);
+  const RepairResult repaired = repaired_surface(source.sequence, settings);
   const MeshSequence& sequence = repaired.sequence;
   report.say(name + ":");
   for (const auto& note : source.notes) report.say("  " + note);

@@ -27,7 +27,7 @@ void inspect(const std::string& name, const Settings& settings, Report& report) 
   std::string reason;
   try {
     d = diagnose_welded(raw);
-    actions = repair(raw, settings.repair).actions;
+    actions = repaired_surface(raw, settings).actions;
   } catch (const UnusableMesh& unusable) {
     reason = unusable.what();
   }

@@ -5,6 +5,7 @@
 #include <dsns/geometry/integrals.hpp>
 #include <dsns/io/frames.hpp>
 #include <dsns/mesh/area_ratios.hpp>
+#include <dsns/mesh/join_pieces.hpp>
 #include <dsns/mesh/own_mesh.hpp>
 #include <dsns/mesh/repair.hpp>
 #include <dsns/mesh/sampling.hpp>

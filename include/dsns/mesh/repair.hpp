@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -67,38 +68,57 @@ inline FaceSelection welded_faces(const Faces& faces, const std::vector<Index>& 
   return kept;
 }
 
+/// The pieces that hang together by edges: their areas over all frames, the largest first, and for each face its piece's
+/// place in that order.
+struct RankedPieces {
+  std::vector<double> areas;
+  std::vector<std::size_t> of_face;
+};
+inline RankedPieces ranked_pieces(const MeshSequence& sequence, const Faces& faces) {
+  auto pieces = face_pieces(sorted_sides(faces), faces.cols());
+  Eigen::VectorXd face_areas = Eigen::VectorXd::Zero(faces.cols());
+  for (const Mat3X& frame : sequence.frames) face_areas += face_normals(frame, faces).colwise().norm().transpose();
+  std::map<Index, double> area_of;
+  for (Index f = 0; f < faces.cols(); ++f) area_of[pieces.find(f)] += face_areas[f];
+  std::vector<std::pair<double, Index>> ranking;
+  for (const auto& [piece, area] : area_of) ranking.emplace_back(-area, piece);
+  std::sort(ranking.begin(), ranking.end());
+  RankedPieces result;
+  std::map<Index, std::size_t> rank_of;
+  for (const auto& [area, piece] : ranking) {
+    rank_of[piece] = result.areas.size();
+    result.areas.push_back(-area);
+  }
+  for (Index f = 0; f < faces.cols(); ++f) result.of_face.push_back(rank_of[pieces.find(f)]);
+  return result;
+}
+
 /// The chosen piece, by area averaged over all frames.
 /// throws   UnusableMesh where none is chosen and the second largest is more than options.loose_piece_limit of the
 ///          largest, or there are fewer pieces than that
 inline FaceSelection chosen_piece(const MeshSequence& sequence, const FaceSelection& all, const RepairOptions& options,
                                   std::vector<std::string>& actions) {
   const Faces& faces = all.faces;
-  auto pieces = face_pieces(sorted_sides(faces), faces.cols());
-  Eigen::VectorXd face_areas = Eigen::VectorXd::Zero(faces.cols());
-  for (const Mat3X& frame : sequence.frames) face_areas += face_normals(frame, faces).colwise().norm().transpose();
-  std::map<Index, double> area_of;
-  for (Index f = 0; f < faces.cols(); ++f) area_of[pieces.find(f)] += face_areas[f];
+  const RankedPieces pieces = ranked_pieces(sequence, faces);
+  const Index count = static_cast<Index>(pieces.areas.size());
   require(options.piece >= 0, "RepairOptions: piece ", options.piece, ", give 1 for the largest and so on, or 0");
-  require<UnusableMesh>(options.piece <= int(area_of.size()), sequence.name, ": there is no piece ", options.piece,
-                        ", only ", area_of.size(), " of them");
-  if (area_of.size() == 1) return all;
+  require<UnusableMesh>(options.piece <= count, sequence.name, ": there is no piece ", options.piece, ", only ", count,
+                        " of them");
+  if (count == 1) return all;
 
-  std::vector<std::pair<double, Index>> ranking;
-  for (const auto& [piece, area] : area_of) ranking.emplace_back(-area, piece);
-  std::sort(ranking.begin(), ranking.end());
-  const double whole = face_areas.sum(), largest = -ranking[0].first, second = -ranking[1].first;
+  const double whole = std::accumulate(pieces.areas.begin(), pieces.areas.end(), 0.0);
+  const double largest = pieces.areas[0], second = pieces.areas[1];
   const auto percent = [&](double area) { return std::round(1000 * area / whole) / 10; };
-  require<UnusableMesh>(options.piece > 0 || second <= options.loose_piece_limit * largest, sequence.name, ": ",
-                        ranking.size(), " loose pieces, the two largest with ", percent(largest), " % and ",
-                        percent(second),
-                        " % of the area: join them, delete all but one, or say which one counts (piece 1, 2, ...)");
+  require<UnusableMesh>(options.piece > 0 || second <= options.loose_piece_limit * largest, sequence.name, ": ", count,
+                        " loose pieces, the two largest with ", percent(largest), " % and ", percent(second),
+                        " % of the area: say which one counts (piece 1, 2, ...), or that they are to be joined");
   const std::size_t rank = options.piece > 0 ? std::size_t(options.piece) - 1 : 0;
-  actions.push_back(message("dropped ", counted(Index(ranking.size()) - 1, "loose piece"), " with ",
-                            percent(whole + ranking[rank].first), " % of the area"));
+  actions.push_back(message("dropped ", counted(count - 1, "loose piece"), " with ",
+                            percent(whole - pieces.areas[rank]), " % of the area"));
   FaceSelection kept;
   std::vector<Index> chosen;
   for (Index f = 0; f < faces.cols(); ++f)
-    if (pieces.find(f) == ranking[rank].second) chosen.push_back(f);
+    if (pieces.of_face[static_cast<std::size_t>(f)] == rank) chosen.push_back(f);
   kept.faces = faces(Eigen::all, chosen);
   for (const Index f : chosen) kept.source.push_back(all.source[static_cast<std::size_t>(f)]);
   return kept;
