@@ -78,4 +78,30 @@ TEST_CASE("another number of vertices does not fit the user's own mesh", "[io]")
   CHECK_THROWS_AS(write_gltf_own_mesh(folder / "own.glb", original, {frames[0]}), InvalidArgument);
 }
 
+TEST_CASE("an image that claims more bytes than its buffer has is not read", "[io]") {
+  const test::TemporaryFolder folder;
+  GltfFixture arm = test::two_joints();
+  arm.more = R"(,"images":[{"bufferView":0,"mimeType":"image/png"}])";
+  std::string json = arm.json();
+  const auto place = json.find("\"byteLength\":", json.find("\"bufferViews\"")) + 13;
+  json.replace(place, json.find_first_of(",}", place) - place, "900000000");
+  const auto original = folder.write("arm.glb", arm.glb_of(json));
+  const std::vector<Mat3X> frames(3, Mat3X::Zero(3, 3));
+  CHECK_FALSE(test::complaint<Error>([&] { write_gltf_own_mesh(folder / "own.glb", original, frames); }).empty());
+}
+
+TEST_CASE("a buffer view that no mesh uses may not name a buffer that is not there", "[io]") {
+  const test::TemporaryFolder folder;
+  const GltfFixture arm = test::two_joints();
+  const std::string json = arm.json(), views = "\"bufferViews\":[";
+  const auto place = json.find(views);
+  REQUIRE(place != std::string::npos);
+  std::string damaged = json;
+  damaged.insert(json.find(']', place), R"(,{"buffer":7,"byteLength":4})");
+  const auto original = folder.write("arm.glb", arm.glb_of(damaged));
+  const std::vector<Mat3X> frames = read_gltf(original, {"", 3}).sequence.frames;
+  const auto said = test::complaint<FileError>([&] { write_gltf_own_mesh(folder / "own.glb", original, frames); });
+  CHECK(said.find("there is no buffer 7") != std::string::npos);
+}
+
 }  // namespace gltf_own_mesh_test

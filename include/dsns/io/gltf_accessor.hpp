@@ -75,10 +75,11 @@ inline bool ignore_image(tinygltf::Image*, const int, std::string*, std::string*
   return true;
 }
 
-/// Encoded as it came, for files that are written anew.
+/// Encoded as it came, for files that are written anew. Images in buffers stay there: whoever calls has not checked that
+/// their bytes lie inside.
 inline bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
                        const unsigned char* bytes, int size, void*) {
-  image->image.assign(bytes, bytes + std::max(size, 0));
+  if (image->bufferView < 0) image->image.assign(bytes, bytes + std::max(size, 0));
   return true;
 }
 

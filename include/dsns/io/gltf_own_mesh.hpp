@@ -21,7 +21,7 @@ struct GltfOwnMeshOptions {
 namespace detail::gltf {
 
 /// All buffers and the images that have files or text of their own, one after the other; views and images point there.
-inline std::vector<unsigned char> gather_bytes(tinygltf::Model& model) {
+inline std::vector<unsigned char> gather_bytes(const GltfFile& file, tinygltf::Model& model) {
   std::vector<unsigned char> bytes;
   const auto append = [&](const std::vector<unsigned char>& more) {
     bytes.resize((bytes.size() + 3) / 4 * 4);
@@ -32,7 +32,7 @@ inline std::vector<unsigned char> gather_bytes(tinygltf::Model& model) {
   std::vector<std::size_t> offsets;
   for (const auto& buffer : model.buffers) offsets.push_back(append(buffer.data));
   for (auto& view : model.bufferViews) {
-    view.byteOffset += offsets[static_cast<std::size_t>(view.buffer)];
+    view.byteOffset += at(file, offsets, view.buffer, "buffer");  // views that no mesh uses were not looked at before
     view.buffer = 0;
   }
   for (auto& image : model.images) {
@@ -97,7 +97,7 @@ inline void write_gltf_own_mesh(const std::filesystem::path& path, const std::fi
   const Faces welded = all.faces.unaryExpr([&](int v) { return static_cast<int>(first[std::size_t(v)]); });
 
   tinygltf::Model model = file.model;
-  std::vector<unsigned char> bytes = g::gather_bytes(model);
+  std::vector<unsigned char> bytes = g::gather_bytes(file, model);
   model.nodes.clear();
   model.meshes.clear();
   model.skins.clear();
