@@ -67,7 +67,7 @@ TEST_CASE("mlp: the residual block written out", "[nn]") {
   const double x = 0.7, y = softplus(0.5 * x + 0.1);
   const double z = softplus(-softplus(2 * y - 0.3) + 0.2 + y);
   CHECK(net(Eigen::VectorXd(Eigen::VectorXd::Constant(1, x)))[0] == Approx(3 * z + 0.4));
-  CHECK(net.columns(Eigen::MatrixXd::Constant(1, 1, x), JetOrder::value)(0, 0) == Approx(3 * z + 0.4));
+  CHECK(net.columns(Eigen::MatrixXd::Constant(1, 1, x), jet_layouts::value)(0, 0) == Approx(3 * z + 0.4));
 }
 
 TEST_CASE("mlp: columns carry the jets of the scalar path", "[nn]") {
@@ -75,9 +75,9 @@ TEST_CASE("mlp: columns carry the jets of the scalar path", "[nn]") {
   const Mlp<double> net(small_shape(activation), 3);
   const Index n = 7;
   const Eigen::MatrixXd x = inputs(5, 6 * n);
-  const Eigen::MatrixXd jets = net.columns(x, JetOrder::second),
-                        tangents = net.columns(x.leftCols(2 * n), JetOrder::tangent),
-                        values = net.columns(x.leftCols(n), JetOrder::value);
+  const Eigen::MatrixXd jets = net.columns(x, jet_layouts::second),
+                        tangents = net.columns(x.leftCols(2 * n), jet_layouts::rate),
+                        values = net.columns(x.leftCols(n), jet_layouts::value);
   double worst = 0;
   for (Index j = 0; j < n; ++j) {
     Eigen::VectorX<Jet2<double, 2>> in(5);
@@ -112,7 +112,7 @@ TEST_CASE("mlp: recorded on the matrix tape it has the gradient of the scalar ta
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(shape.parameter_count());
   MatrixTape<double> tape;
   const auto out = net.record(tape, tape.constant(x), gradient);
-  CHECK(Eigen::MatrixXd(tape.value(out)).isApprox(net.columns(x, JetOrder::value), 1e-14));
+  CHECK(Eigen::MatrixXd(tape.value(out)).isApprox(net.columns(x, jet_layouts::value), 1e-14));
   tape.backward(tape.squared_error(out, target));
 
   using V = Var<double>;
@@ -136,8 +136,8 @@ TEST_CASE("mlp: recorded on the matrix tape it has the gradient of the scalar ta
 TEST_CASE("mlp: shapes and inputs that do not fit are refused", "[nn]") {
   MlpShape shape = small_shape(Activation::silu);
   const Mlp<double> net(shape);
-  CHECK_THROWS_AS(net.columns(Eigen::MatrixXd::Zero(4, 6), JetOrder::value), InvalidArgument);
-  CHECK_THROWS_AS(net.columns(Eigen::MatrixXd::Zero(5, 7), JetOrder::second), InvalidArgument);
+  CHECK_THROWS_AS(net.columns(Eigen::MatrixXd::Zero(4, 6), jet_layouts::value), InvalidArgument);
+  CHECK_THROWS_AS(net.columns(Eigen::MatrixXd::Zero(5, 7), jet_layouts::second), InvalidArgument);
   CHECK_THROWS_AS(Mlp<double>(shape, Eigen::VectorXd::Zero(3)), InvalidArgument);
   shape.width = 0;
   CHECK_THROWS_AS(Mlp<double>(shape), InvalidArgument);

@@ -61,6 +61,28 @@ TEST_CASE("neural surface: batches equal the scalar path, poles included", "[nn]
   CHECK(distance(a.fuu, b.fuu) < 1e-10);
   CHECK(distance(a.fuv, b.fuv) < 1e-10);
   CHECK(distance(a.fvv, b.fvv) < 1e-10);
+  const SurfaceTangents first = surface.tangents(c, t);
+  CHECK(distance(first.f, b.f) < 1e-12);
+  CHECK(distance(first.fu, b.fu) < 1e-11);
+  CHECK(distance(first.fv, b.fv) < 1e-11);
+  const MotionJets m = surface.motion_jets(c, t), n = motion_jets(oracle, c, t);
+  CHECK(distance(m.fv, n.fv) < 1e-11);
+  CHECK(distance(m.ft, n.ft) < 1e-11);
+  CHECK(distance(m.ftu, n.ftu) < 1e-10);
+  CHECK(distance(m.ftv, n.ftv) < 1e-10);
+}
+
+TEST_CASE("neural surface: single precision keeps five digits of values and tangents", "[nn]") {
+  const NeuralSurface exact = small_surface(SurfaceEncoding());
+  const BasicNeuralSurface<float> surface(exact.encoding(), exact.network().cast<float>(), exact.translation(),
+                                          exact.scale());
+  const ChartBatch c = charts();
+  const SurfaceJets a = surface.jets(c, 0.37), b = exact.jets(c, 0.37);
+  const double unit = exact.scale();
+  CHECK(distance(a.f, b.f) < 2e-5 * unit);
+  CHECK(distance(surface.tangents(c, 0.37).fu, b.fu) < 2e-5 * b.fu.cwiseAbs().maxCoeff());
+  CHECK(distance(a.fuv, b.fuv) < 2e-5 * b.fuv.cwiseAbs().maxCoeff());
+  CHECK(distance(a.f, b.f) > 1e-9 * unit);  // it is single precision
 }
 
 TEST_CASE("neural surface: jets and velocities against central differences along great circles", "[nn]") {

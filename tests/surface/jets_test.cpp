@@ -99,6 +99,60 @@ TEST_CASE("velocities of a formula agree with central differences", "[surface]")
   CHECK(jets(any, charts_at(s), 0.5).fuv == jets(at_time(body, 0.5), charts_at(s)).fuv);
 }
 
+TEST_CASE("tangents and motion jets are those of the jets and of central differences in time", "[surface]") {
+  LimbedBody body;
+  body.axes = {1, 0.7, 0.5};
+  body.limbs = {{Vec3d(1, 1, 0).normalized(), 6, Vec3d(1, 0, 0.2), Vec3d(0, 0.5, 0.3), 0.1}};
+  const AnyAnimatedSurface any(body);
+  const RegisteredSurface view(body, rotation_exp(Vec3d(0.3, 0.2, -0.9)), random_diffeomorphism(2, 3, 0.08));
+  const ChartBatch c = charts_at(test::sphere_points());
+  const auto check = [&](const auto& surface) {
+    constexpr double t = 0.3, h = 1e-5;
+    const SurfaceJets j = jets(surface, c, t), after = jets(surface, c, t + h), before = jets(surface, c, t - h);
+    const SurfaceTangents first = tangents(surface, c, t);
+    CHECK((first.f - j.f).norm() + (first.fu - j.fu).norm() + (first.fv - j.fv).norm() < 1e-12);
+    const MotionJets m = motion_jets(surface, c, t);
+    CHECK((m.f - j.f).norm() + (m.fu - j.fu).norm() + (m.fv - j.fv).norm() < 1e-12);
+    CHECK((m.ft - velocities(surface, c.s, t)).norm() < 1e-12);
+    CHECK((m.ftu - (after.fu - before.fu) / (2 * h)).cwiseAbs().maxCoeff() < 1e-8);
+    CHECK((m.ftv - (after.fv - before.fv) / (2 * h)).cwiseAbs().maxCoeff() < 1e-8);
+  };
+  check(body);
+  check(any);
+  check(view);
+  const SurfaceTangents still = tangents(at_time(body, 0.3), c);
+  CHECK(still.fu == tangents(body, c, 0.3).fu);
+}
+
+namespace {
+
+/// The same formula at one point at a time and in lanes.
+template <bool Lanes>
+struct Wavy {
+  static constexpr bool works_in_lanes = Lanes;
+  template <class T>
+  Vec3<T> operator()(const Vec3<T>& s, const T& t) const {
+    using std::sin;
+    return {s[0] * (2.0 + sin(3.0 * s[1] + t)), s[1] - t * s[2], s[2] + 0.1 * s[0] * s[0]};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a functor that works in lanes has the derivatives of one that does not, to the last point", "[surface]") {
+  for (const int points : {1, 2, 3, 5, 8}) {
+    const ChartBatch c = charts_at(test::sphere_points(points));
+    const SurfaceJets a = jets(Wavy<true>{}, c, 0.4), b = jets(Wavy<false>{}, c, 0.4);
+    for (const auto field :
+         {&SurfaceJets::f, &SurfaceJets::fu, &SurfaceJets::fv, &SurfaceJets::fuu, &SurfaceJets::fuv, &SurfaceJets::fvv})
+      CHECK((a.*field - b.*field).cwiseAbs().maxCoeff() < 1e-13);
+    const MotionJets m = motion_jets(Wavy<true>{}, c, 0.4), n = motion_jets(Wavy<false>{}, c, 0.4);
+    for (const auto field : {&MotionJets::fu, &MotionJets::ft, &MotionJets::ftu, &MotionJets::ftv})
+      CHECK((m.*field - n.*field).cwiseAbs().maxCoeff() < 1e-13);
+    CHECK((tangents(Wavy<true>{}, c, 0.4).fv - b.fv).cwiseAbs().maxCoeff() < 1e-13);
+  }
+}
+
 TEST_CASE("a registered surface has the jets of the composed functor", "[surface]") {
   struct Composed {
     const LimbedBody& body;

@@ -2,7 +2,9 @@
 /// What the network sees of a point s of the sphere and a time t: functions of them that span many scales, so that the
 /// network need not make fine detail out of plain coordinates. Space and time are encoded apart, one above the other.
 #include <dsns/core/types.hpp>
+#include <dsns/nn/jet_layout.hpp>
 #include <dsns/sphere/harmonics.hpp>
+#include <dsns/surface/scalar_jets.hpp>
 
 namespace dsns {
 
@@ -46,6 +48,39 @@ struct SurfaceEncoding {
     for (int k = 1; k <= time_frequencies; ++k) append_waves(out, row, T(pi * k * t));
     for (int k = 0; k < time_octaves; ++k) append_waves(out, row, T(std::ldexp(time_base, k) * t));
     return out;
+  }
+
+  /// Writes the features of points first .. first + n - 1 at time t to x, features x (n blocks), as the layout says.
+  template <class T>
+  void fill(const ChartBatch& charts, Index first, Index n, double t, const JetLayout& layout,
+            Eigen::MatrixX<T>& x) const {
+    x.setZero();
+    const Index rows = space_features();
+    for (Index i = 0; i < n; ++i) {
+      const auto write = [&](Index block, Index k, double value) { x(k, block * n + i) = T(value); };
+      if (layout.bends()) {
+        const auto jet = space(detail::chart_jet(charts, first + i));
+        for (Index k = 0; k < rows; ++k) {
+          const auto& [f, g, h] = jet[k];
+          const double blocks[] = {f, g[0], g[1], h[0], h[1], h[2]};
+          for (Index b = 0; b < 6; ++b) write(b, k, blocks[b]);
+        }
+      } else if (layout.space_directions() > 0) {
+        const auto jet = space(detail::chart_dual(charts, first + i));
+        for (Index k = 0; k < rows; ++k) {
+          write(0, k, jet[k].f);
+          write(1, k, jet[k].g[0]);
+          write(2, k, jet[k].g[1]);
+        }
+      } else {
+        x.col(i).head(rows) = space(Vec3d(charts.s.col(first + i))).template cast<T>();
+      }
+    }
+    const auto moving = time(detail::TimeDual::variable(t, 0));
+    for (Index k = 0; k < moving.size(); ++k) {
+      x.row(rows + k).head(n).setConstant(T(moving[k].f));
+      if (layout.time >= 0) x.row(rows + k).segment((1 + layout.time) * n, n).setConstant(T(moving[k].g[0]));
+    }
   }
 
  private:

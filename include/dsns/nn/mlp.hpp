@@ -5,6 +5,7 @@
 #include <dsns/autodiff/matrix.hpp>
 #include <dsns/core/types.hpp>
 #include <dsns/nn/activations.hpp>
+#include <dsns/nn/jet_layout.hpp>
 
 #include <cstdint>
 #include <random>
@@ -28,13 +29,6 @@ struct MlpShape {
     return n;
   }
   Index parameter_count() const { return offset(layers()); }
-};
-
-/// What columns of a batch hold, as the number of blocks of n columns each.
-enum class JetOrder : int {
-  value = 1,    ///< f
-  tangent = 2,  ///< f, f_t
-  second = 6    ///< f, f_u, f_v, f_uu, f_uv, f_vv
 };
 
 /// T is the type of the parameters.
@@ -85,22 +79,23 @@ class Mlp {
 
   /// A tile of n points carried through all layers: x and the result have n columns for each part of the jets.
   /// accuracy equal to the scalar path to 1e-12 [nn/mlp_test]
-  Matrix columns(Matrix x, JetOrder order) const {
-    require(x.rows() == shape_.inputs && x.cols() % Index(order) == 0, "Mlp::columns: ", x.rows(), " x ", x.cols(),
-            " for ", shape_.inputs, " inputs in ", Index(order), " blocks");
+  Matrix columns(Matrix x, const JetLayout& layout) const {
+    const Index blocks = layout.blocks();
+    require(x.rows() == shape_.inputs && x.cols() % blocks == 0, "Mlp::columns: ", x.rows(), " x ", x.cols(), " for ",
+            shape_.inputs, " inputs in ", blocks, " blocks");
     Matrix y, z;
     const auto layer = [&](int l, const Matrix& in, Matrix& out) {
       out.noalias() = weights(l) * in;
-      out.leftCols(in.cols() / Index(order)).colwise() += bias(l);
+      out.leftCols(in.cols() / blocks).colwise() += bias(l);
     };
     layer(0, x, y);
-    activate_jets(y, order);
+    activate_jets(y, layout);
     for (int l = 1; l + 1 < shape_.layers(); l += 2) {
       layer(l, y, z);
-      activate_jets(z, order);
+      activate_jets(z, layout);
       layer(l + 1, z, x);
       y += x;
-      activate_jets(y, order);
+      activate_jets(y, layout);
     }
     layer(shape_.layers() - 1, y, z);
     return z;
@@ -149,23 +144,22 @@ class Mlp {
   }
 
   /// The activation's chain rule over the blocks of y.
-  void activate_jets(Matrix& y, JetOrder order) const {
+  void activate_jets(Matrix& y, const JetLayout& layout) const {
     using Array = Eigen::ArrayX<T>;
-    const Index n = y.cols() / Index(order);
+    const Index n = y.cols() / layout.blocks();
     Array slope(y.rows()), bend(y.rows());
     const auto block = [&](int k, Index j) { return y.col(k * n + j).array(); };
     for (Index j = 0; j < n; ++j) {
-      if (order != JetOrder::second) {
+      if (layout.seconds > 0)
+        activate<T>(shape_.activation, block(0, j), slope, bend);
+      else
         activate<T>(shape_.activation, block(0, j), slope);
-        if (order == JetOrder::tangent) block(1, j) *= slope;
-        continue;
+      for (int k = 0; k < layout.seconds; ++k) {
+        const auto [a, b] = layout.pairs[std::size_t(k)];
+        auto second = block(1 + layout.firsts + k, j);
+        second = slope * second + bend * block(1 + a, j) * block(1 + b, j);
       }
-      activate<T>(shape_.activation, block(0, j), slope, bend);
-      block(3, j) = slope * block(3, j) + bend * block(1, j).square();
-      block(4, j) = slope * block(4, j) + bend * block(1, j) * block(2, j);
-      block(5, j) = slope * block(5, j) + bend * block(2, j).square();
-      block(1, j) *= slope;
-      block(2, j) *= slope;
+      for (int k = 1; k <= layout.firsts; ++k) block(k, j) *= slope;
     }
   }
 

@@ -19,6 +19,8 @@ class AnyAnimatedSurface {
   Mat3X positions(const Mat3X& s, double t) const { return surface_->positions(s, t); }
   Mat3X velocities(const Mat3X& s, double t) const { return surface_->velocities(s, t); }
   SurfaceJets jets(const ChartBatch& c, double t) const { return surface_->jets(c, t); }
+  SurfaceTangents tangents(const ChartBatch& c, double t) const { return surface_->tangents(c, t); }
+  MotionJets motion_jets(const ChartBatch& c, double t) const { return surface_->motion_jets(c, t); }
 
  private:
   struct Interface {
@@ -27,6 +29,8 @@ class AnyAnimatedSurface {
     virtual Mat3X positions(const Mat3X& s, double t) const = 0;
     virtual Mat3X velocities(const Mat3X& s, double t) const = 0;
     virtual SurfaceJets jets(const ChartBatch& c, double t) const = 0;
+    virtual SurfaceTangents tangents(const ChartBatch& c, double t) const = 0;
+    virtual MotionJets motion_jets(const ChartBatch& c, double t) const = 0;
   };
   template <class F>
   struct Model final : Interface {
@@ -35,6 +39,8 @@ class AnyAnimatedSurface {
     Mat3X positions(const Mat3X& s, double t) const override { return dsns::positions(surface, s, t); }
     Mat3X velocities(const Mat3X& s, double t) const override { return dsns::velocities(surface, s, t); }
     SurfaceJets jets(const ChartBatch& c, double t) const override { return dsns::jets(surface, c, t); }
+    SurfaceTangents tangents(const ChartBatch& c, double t) const override { return dsns::tangents(surface, c, t); }
+    MotionJets motion_jets(const ChartBatch& c, double t) const override { return dsns::motion_jets(surface, c, t); }
     F surface;
   };
 

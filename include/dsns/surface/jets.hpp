@@ -2,57 +2,19 @@
 /// What a surface is, and the one place where its derivatives come from.
 ///
 /// A surface is a functor f(s) on the unit sphere, a moving surface a functor F(s, t) with t in [0, 1]. Algorithms ask for
-///   positions(f, s)      positions(F, s, t)      values at the columns of s, 3 x n
-///   jets(f, charts)      jets(F, charts, t)      values with first and second derivatives in the charts
-///                        velocities(F, s, t)     dF/dt, 3 x n
+///   positions(f, s)      positions(F, s, t)       values at the columns of s, 3 x n
+///   tangents(f, charts)  tangents(F, charts, t)   values with first derivatives in the charts
+///   jets(f, charts)      jets(F, charts, t)       values with first and second derivatives in the charts
+///                        velocities(F, s, t)      dF/dt, 3 x n
+///                        motion_jets(F, charts, t) values and velocities with first derivatives in the charts
 /// Each takes the member function of that name where the surface has one (the way of batches: networks, sampled meshes),
 /// else a free function found by argument-dependent lookup (jets only), else the call operator with a differentiating
 /// scalar: f(Vec3<Jet2<double>>), F(Vec3<Dual<double, 1>>, Dual<double, 1>).
-#include <dsns/autodiff/dual.hpp>
-#include <dsns/autodiff/eigen.hpp>
-#include <dsns/autodiff/jet2.hpp>
-#include <dsns/sphere/charts.hpp>
+#include <dsns/surface/scalar_jets.hpp>
 
 #include <concepts>
 
 namespace dsns {
-
-/// Values and derivatives of n surface points in their charts; all 3 x n.
-struct SurfaceJets {
-  Mat3X f, fu, fv, fuu, fuv, fvv;
-
-  explicit SurfaceJets(Index n) : f(3, n), fu(3, n), fv(3, n), fuu(3, n), fuv(3, n), fvv(3, n) {}
-  Index size() const { return f.cols(); }
-};
-
-namespace detail {
-
-using SpatialJet = Jet2<double, 2>;
-using TimeDual = Dual<double, 1>;
-
-/// The chart of point i as a 2-jet: s_u = e1, s_v = e2, s_uu = s_vv = -s, s_uv = 0.
-inline Vec3<SpatialJet> chart_jet(const ChartBatch& c, Index i) {
-  Vec3<SpatialJet> s;
-  for (int k = 0; k < 3; ++k) {
-    s[k].f = c.s(k, i);
-    s[k].g = {c.e1(k, i), c.e2(k, i)};
-    s[k].h = {-c.s(k, i), 0.0, -c.s(k, i)};
-  }
-  return s;
-}
-
-inline void store(SurfaceJets& out, Index i, const Vec3<SpatialJet>& p) {
-  for (int k = 0; k < 3; ++k) {
-    out.f(k, i) = p[k].f;
-    out.fu(k, i) = p[k].g[0];
-    out.fv(k, i) = p[k].g[1];
-    out.fuu(k, i) = p[k].h[0];
-    out.fuv(k, i) = p[k].h[1];
-    out.fvv(k, i) = p[k].h[2];
-  }
-}
-
-}  // namespace detail
 
 namespace detail::jets_lookup {
 
@@ -88,15 +50,12 @@ struct JetsFunction {
   template <class S>
   requires MemberJets<S> || FreeJets<S> || ScalarJets<S>
   [[nodiscard]] SurfaceJets operator()(const S& f, const ChartBatch& c) const {
-    if constexpr (MemberJets<S>) {
+    if constexpr (MemberJets<S>)
       return f.jets(c);
-    } else if constexpr (FreeJets<S>) {
+    else if constexpr (FreeJets<S>)
       return jets(f, c);
-    } else {
-      SurfaceJets out(c.size());
-      for (Index i = 0; i < c.size(); ++i) store(out, i, f(chart_jet(c, i)));
-      return out;
-    }
+    else
+      return jets_by_scalars<LanesOf<S>>(c, f);
   }
   template <class F>
   requires MovingMemberJets<F> || MovingFreeJets<F> || MovingScalarJets<F>
@@ -106,9 +65,8 @@ struct JetsFunction {
     } else if constexpr (MovingFreeJets<F>) {
       return jets(f, c, t);
     } else {
-      SurfaceJets out(c.size());
-      for (Index i = 0; i < c.size(); ++i) store(out, i, f(chart_jet(c, i), SpatialJet(t)));
-      return out;
+      using T = SpatialJetOf<LanesOf<F>>;
+      return jets_by_scalars<LanesOf<F>>(c, [&](const Vec3<T>& s) { return f(s, T(t)); });
     }
   }
 };
@@ -127,6 +85,22 @@ concept Surface = requires(const S& f, const Vec3d& s, const ChartBatch& c) {
 
 namespace detail {
 
+template <class S>
+concept MemberTangents = requires(const S& f, const ChartBatch& c) {
+  { f.tangents(c) } -> std::same_as<SurfaceTangents>;
+};
+template <class S>
+concept ScalarTangents = requires(const S& f, const Vec3<SpatialDual>& s) {
+  { f(s) } -> std::same_as<Vec3<SpatialDual>>;
+};
+template <class F>
+concept MovingMemberTangents = requires(const F& f, const ChartBatch& c, double t) {
+  { f.tangents(c, t) } -> std::same_as<SurfaceTangents>;
+};
+template <class F>
+concept MovingScalarTangents = requires(const F& f, const Vec3<SpatialDual>& s, SpatialDual t) {
+  { f(s, t) } -> std::same_as<Vec3<SpatialDual>>;
+};
 template <class F>
 concept MemberVelocities = requires(const F& f, const Mat3X& s, double t) {
   { f.velocities(s, t) } -> std::same_as<Mat3X>;
@@ -135,15 +109,25 @@ template <class F>
 concept ScalarVelocities = requires(const F& f, const Vec3<TimeDual>& s, TimeDual t) {
   { f(s, t) } -> std::same_as<Vec3<TimeDual>>;
 };
+template <class F>
+concept MemberMotionJets = requires(const F& f, const ChartBatch& c, double t) {
+  { f.motion_jets(c, t) } -> std::same_as<MotionJets>;
+};
+template <class F>
+concept ScalarMotionJets = requires(const F& f, const Vec3<MotionDual>& s, MotionDual t) {
+  { f(s, t) } -> std::same_as<Vec3<MotionDual>>;
+};
 
 }  // namespace detail
 
-/// Sends a unit vector and a time in [0, 1] to R^3, has 2-jets in space and a derivative in time.
+/// Sends a unit vector and a time in [0, 1] to R^3, has 2-jets in space and a derivative in time, which has first
+/// derivatives in space.
 template <class F>
 concept AnimatedSurface = requires(const F& f, const Vec3d& s, const ChartBatch& c, double t) {
   { f(s, t) } -> std::same_as<Vec3d>;
   { dsns::jets(f, c, t) } -> std::same_as<SurfaceJets>;
   requires detail::MemberVelocities<F> || detail::ScalarVelocities<F>;
+  requires detail::MemberMotionJets<F> || detail::ScalarMotionJets<F>;
 };
 
 /// Values of a surface at the n columns of s.
@@ -174,6 +158,30 @@ Mat3X positions(const F& f, const Mat3X& s, double t) {
   }
 }
 
+/// Values and first derivatives of a surface at n charts: what normals, areas and SRNFs need.
+template <Surface S>
+SurfaceTangents tangents(const S& f, const ChartBatch& c) {
+  if constexpr (detail::MemberTangents<S>)
+    return f.tangents(c);
+  else if constexpr (detail::ScalarTangents<S> && !detail::jets_lookup::MemberJets<S>)
+    return detail::tangents_by_scalars<detail::LanesOf<S>>(c, f);
+  else
+    return SurfaceTangents(jets(f, c));
+}
+
+/// The same of a moving surface at time t.
+template <AnimatedSurface F>
+SurfaceTangents tangents(const F& f, const ChartBatch& c, double t) {
+  if constexpr (detail::MovingMemberTangents<F>) {
+    return f.tangents(c, t);
+  } else if constexpr (detail::MovingScalarTangents<F> && !detail::jets_lookup::MovingMemberJets<F>) {
+    using T = detail::SpatialDualOf<detail::LanesOf<F>>;
+    return detail::tangents_by_scalars<detail::LanesOf<F>>(c, [&](const Vec3<T>& s) { return f(s, T(t)); });
+  } else {
+    return SurfaceTangents(jets(f, c, t));
+  }
+}
+
 /// dF/dt at the n columns of s and time t: length unit per clip.
 template <AnimatedSurface F>
 Mat3X velocities(const F& f, const Mat3X& s, double t) {
@@ -181,14 +189,22 @@ Mat3X velocities(const F& f, const Mat3X& s, double t) {
     return f.velocities(s, t);
   } else {
     Mat3X out(3, s.cols());
-    detail::TimeDual time(t);
-    time.g = {1.0};
+    const auto time = detail::TimeDual::variable(t, 0);
     for (Index i = 0; i < s.cols(); ++i) {
       const Vec3<detail::TimeDual> p = f(Vec3<detail::TimeDual>(s.col(i).template cast<detail::TimeDual>()), time);
       for (int k = 0; k < 3; ++k) out(k, i) = p[k].g[0];
     }
     return out;
   }
+}
+
+/// Values and velocities with their first derivatives in n charts at time t: what rates of area and of the metric need.
+template <AnimatedSurface F>
+MotionJets motion_jets(const F& f, const ChartBatch& c, double t) {
+  if constexpr (detail::MemberMotionJets<F>)
+    return f.motion_jets(c, t);
+  else
+    return detail::motion_by_scalars<detail::LanesOf<F>>(f, c, t);
 }
 
 /// A moving surface frozen at one time: a Surface. Refers to the moving surface, which must outlive it.
@@ -199,6 +215,7 @@ class AtTime {
 
   Vec3d operator()(const Vec3d& s) const { return (*surface_)(s, t_); }
   SurfaceJets jets(const ChartBatch& c) const { return dsns::jets(*surface_, c, t_); }
+  SurfaceTangents tangents(const ChartBatch& c) const { return dsns::tangents(*surface_, c, t_); }
   Mat3X positions(const Mat3X& s) const { return dsns::positions(*surface_, s, t_); }
 
  private:

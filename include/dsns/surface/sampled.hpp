@@ -61,11 +61,36 @@ class SampledSurface {
   /// The exact 2-jets inside each point's triangle; on an edge those of one side.
   SurfaceJets jets(const ChartBatch& charts, double t) const { return jets(locate(charts.s), charts, t); }
   SurfaceJets jets(const Hits& hits, const ChartBatch& charts, double t) const {
-    require(static_cast<Index>(hits.size()) == charts.size(), "SampledSurface: ", hits.size(), " hits for ",
-            charts.size(), " charts");
+    check(hits, charts);
     const Mat3X vertices = blend(spline_.weights(t));
     SurfaceJets out(charts.size());
-    for (Index i = 0; i < charts.size(); ++i) store_jet(out, i, hits[static_cast<std::size_t>(i)], charts, vertices);
+    for (Index i = 0; i < charts.size(); ++i) {
+      const TriangleJet j = triangle_jet(hits[static_cast<std::size_t>(i)], charts, i, vertices);
+      out.f.col(i) = j.f;
+      out.fu.col(i) = j.fu;
+      out.fv.col(i) = j.fv;
+      out.fuu.col(i) = -2 * j.mu * j.fu;
+      out.fuv.col(i) = -j.mv * j.fu - j.mu * j.fv;
+      out.fvv.col(i) = -2 * j.mv * j.fv;
+    }
+    return out;
+  }
+
+  MotionJets motion_jets(const ChartBatch& charts, double t) const { return motion_jets(locate(charts.s), charts, t); }
+  MotionJets motion_jets(const Hits& hits, const ChartBatch& charts, double t) const {
+    check(hits, charts);
+    const Mat3X vertices = blend(spline_.weights(t)), rates = blend(spline_.derivative_weights(t));
+    MotionJets out(charts.size());
+    for (Index i = 0; i < charts.size(); ++i) {
+      const SphereHit& hit = hits[static_cast<std::size_t>(i)];
+      const TriangleJet j = triangle_jet(hit, charts, i, vertices), rate = triangle_jet(hit, charts, i, rates);
+      out.f.col(i) = j.f;
+      out.fu.col(i) = j.fu;
+      out.fv.col(i) = j.fv;
+      out.ft.col(i) = rate.f;
+      out.ftu.col(i) = rate.fu;
+      out.ftv.col(i) = rate.fv;
+    }
     return out;
   }
 
@@ -92,10 +117,19 @@ class SampledSurface {
     return out;
   }
 
+  void check(const Hits& hits, const ChartBatch& charts) const {
+    require(static_cast<Index>(hits.size()) == charts.size(), "SampledSurface: ", hits.size(), " hits for ",
+            charts.size(), " charts");
+  }
+
+  /// What is linear on a triangle, in the chart of point i:
   /// F = g / m with g = X P^-1 s and m = 1 . P^-1 s linear in s, so that g_uu = -g, m_uu = -m, g_uv = m_uv = 0 and
   ///   F_u = (g_u - F m_u) / m,   F_uu = -2 F_u m_u / m,   F_uv = -(F_u m_v + F_v m_u) / m.
-  void store_jet(SurfaceJets& out, Index i, const SphereHit& hit, const ChartBatch& charts,
-                 const Mat3X& vertices) const {
+  struct TriangleJet {
+    Vec3d f, fu, fv;
+    double mu, mv;  // m_u / m, m_v / m
+  };
+  TriangleJet triangle_jet(const SphereHit& hit, const ChartBatch& charts, Index i, const Mat3X& vertices) const {
     const Mat3 p = corners(location_.sphere(), hit.face), x = corners(vertices, hit.face);
     const Vec3d a = p.col(0), b = p.col(1), c = p.col(2);
     Mat3 adjugate;  // det(P) P^-1; the determinant cancels
@@ -104,13 +138,8 @@ class SampledSurface {
     const double m = (adjugate * charts.s.col(i)).sum(), mu = bu.sum() / m, mv = bv.sum() / m;
     const Vec3d f = x * hit.barycentric, origin = x.col(0);
     const Mat3 edges = x.colwise() - origin;  // F - x_0 has the same form, and no large offset
-    const Vec3d local = f - origin, fu = edges * bu / m - local * mu, fv = edges * bv / m - local * mv;
-    out.f.col(i) = f;
-    out.fu.col(i) = fu;
-    out.fv.col(i) = fv;
-    out.fuu.col(i) = -2 * mu * fu;
-    out.fuv.col(i) = -mv * fu - mu * fv;
-    out.fvv.col(i) = -2 * mv * fv;
+    const Vec3d local = f - origin;
+    return {f, edges * bu / m - local * mu, edges * bv / m - local * mv, mu, mv};
   }
 
   SphereLocation location_;
