@@ -5,6 +5,7 @@
 #include <dsns/nn/mlp.hpp>
 
 #include <random>
+#include <vector>
 
 namespace mlp_test {
 
@@ -71,7 +72,7 @@ TEST_CASE("mlp: the residual block written out", "[nn]") {
 }
 
 TEST_CASE("mlp: columns carry the jets of the scalar path", "[nn]") {
-  const auto activation = GENERATE(Activation::softplus, Activation::silu, Activation::tanh);
+  const auto activation = GENERATE(Activation::softplus, Activation::silu, Activation::tanh, Activation::sine);
   const Mlp<double> net(small_shape(activation), 3);
   const Index n = 7;
   const Eigen::MatrixXd x = inputs(5, 6 * n);
@@ -104,7 +105,7 @@ TEST_CASE("mlp: columns carry the jets of the scalar path", "[nn]") {
 }
 
 TEST_CASE("mlp: recorded on the matrix tape it has the gradient of the scalar tape", "[nn]") {
-  const auto activation = GENERATE(Activation::softplus, Activation::silu, Activation::tanh);
+  const auto activation = GENERATE(Activation::softplus, Activation::silu, Activation::tanh, Activation::sine);
   const MlpShape shape = small_shape(activation);
   const Mlp<double> net(shape, 11);
   const Eigen::MatrixXd x = inputs(5, 6), target = inputs(3, 6);
@@ -131,6 +132,59 @@ TEST_CASE("mlp: recorded on the matrix tape it has the gradient of the scalar ta
   for (Index k = 0; k < parameters.size(); ++k)
     worst = std::max(worst, std::abs(gradient[k] - scalar.adjoint(parameters[k])));
   CHECK(worst < 1e-12 * gradient.norm());
+}
+
+namespace {
+
+/// How far the recorded jets are from the batch's, and the gradient of the sum of their squares from reverse mode over
+/// scalars that carry the derivatives in the input. `places`: of the layout's second derivatives in the scalar's Hessian.
+template <JetLayout layout, class Jet>
+double recorded_jets_error(Activation activation, const std::vector<std::size_t>& places) {
+  const MlpShape shape = small_shape(activation);
+  const Mlp<double> net(shape, 11);
+  constexpr Index n = 4;
+  const Eigen::MatrixXd x = inputs(5, n * layout.blocks());
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(shape.parameter_count());
+  MatrixTape<double> tape;
+  const auto out = net.record<layout>(tape, tape.constant(x), gradient);
+  double worst = (tape.value(out) - net.columns(x, layout)).cwiseAbs().maxCoeff();
+  tape.backward(tape.squared_error(out, Eigen::MatrixXd::Zero(3, x.cols())));
+
+  using V = Var<double>;
+  Tape<double> scalar;
+  const auto recording = scalar.record();
+  Eigen::VectorX<V> parameters(shape.parameter_count());
+  for (Index k = 0; k < parameters.size(); ++k) parameters[k] = scalar.variable(net.parameters()[k]);
+  const Mlp<V> active(shape, parameters);
+  V loss(0);
+  for (Index j = 0; j < n; ++j) {
+    Eigen::VectorX<Jet> in(5);
+    for (Index k = 0; k < 5; ++k) {
+      in[k] = Jet(V(x(k, j)));
+      for (int d = 0; d < layout.firsts; ++d) in[k].g[std::size_t(d)] = V(x(k, (1 + d) * n + j));
+      for (std::size_t d = 0; d < places.size(); ++d)
+        in[k].h[places[d]] = V(x(k, (1 + layout.firsts + Index(d)) * n + j));
+    }
+    for (const Jet& y : active(in)) {
+      loss += sqr(y.f);
+      for (int d = 0; d < layout.firsts; ++d) loss += sqr(y.g[std::size_t(d)]);
+      for (const std::size_t place : places) loss += sqr(y.h[place]);
+    }
+  }
+  scalar.backward(loss);
+  for (Index k = 0; k < parameters.size(); ++k)
+    worst = std::max(worst, std::abs(gradient[k] - scalar.adjoint(parameters[k])) / gradient.norm());
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("mlp: gradients of losses that contain derivatives in the input are those of the scalar tape", "[nn]") {
+  const auto a = GENERATE(Activation::softplus, Activation::silu, Activation::tanh, Activation::sine);
+  using V = Var<double>;
+  CHECK(recorded_jets_error<jet_layouts::tangents, Jet2<V, 2>>(a, {}) < 1e-12);
+  CHECK(recorded_jets_error<jet_layouts::second, Jet2<V, 2>>(a, {0, 1, 2}) < 1e-12);
+  CHECK(recorded_jets_error<jet_layouts::motion, Jet2<V, 3>>(a, {2, 4}) < 1e-12);  // of uu uv ut vv vt tt
 }
 
 TEST_CASE("mlp: shapes and inputs that do not fit are refused", "[nn]") {

@@ -7,21 +7,23 @@
 
 namespace dsns {
 
-enum class Activation { softplus, silu, tanh };
+enum class Activation { softplus, silu, tanh, sine };
 
 /// The activation at x; the scalar path, which is the oracle of the others.
 template <class X>
 X activate(Activation activation, const X& x) {
-  using std::tanh;
+  using std::sin, std::tanh;
   switch (activation) {
     case Activation::softplus:
       return softplus(x);
     case Activation::silu:
       return silu(x);
     case Activation::tanh:
+      return tanh(x);
+    case Activation::sine:
       break;
   }
-  return tanh(x);
+  return sin(x);
 }
 
 /// Replaces y by w(y) and writes w'(y).
@@ -41,6 +43,10 @@ void activate(Activation activation, Eigen::Ref<Eigen::ArrayX<T>> y, Eigen::Ref<
     case Activation::tanh:
       y = y.tanh();
       slope = 1 - y.square();
+      break;
+    case Activation::sine:
+      slope = y.cos();
+      y = y.sin();
       break;
   }
 }
@@ -63,6 +69,38 @@ void activate(Activation activation, Eigen::Ref<Eigen::ArrayX<T>> y, Eigen::Ref<
     case Activation::tanh:
       activate<T>(activation, y, slope);
       bend = -2 * y * slope;
+      break;
+    case Activation::sine:
+      activate<T>(activation, y, slope);
+      bend = -y;
+      break;
+  }
+}
+
+/// Replaces y by w(y) and writes w'(y), w''(y) and w'''(y).
+template <class T>
+void activate(Activation activation, Eigen::Ref<Eigen::ArrayX<T>> y, Eigen::Ref<Eigen::ArrayX<T>> slope,
+              Eigen::Ref<Eigen::ArrayX<T>> bend, Eigen::Ref<Eigen::ArrayX<T>> third) {
+  switch (activation) {
+    case Activation::softplus:
+      activate<T>(activation, y, slope, bend);
+      third = bend * (1 - 2 * slope);
+      break;
+    case Activation::silu:
+      slope = (1 + (-y).exp()).inverse();
+      bend = slope * (1 - slope);
+      third = bend * (3 * (1 - 2 * slope) + y * (1 - 6 * bend));
+      bend *= 2 + y * (1 - 2 * slope);
+      y *= slope;
+      slope += y * (1 - slope);
+      break;
+    case Activation::tanh:
+      activate<T>(activation, y, slope, bend);
+      third = slope * (6 * y.square() - 2);
+      break;
+    case Activation::sine:
+      activate<T>(activation, y, slope, bend);
+      third = -slope;
       break;
   }
 }

@@ -1,8 +1,8 @@
 #pragma once
 /// What the network sees of a point s of the sphere and a time t: functions of them that span many scales, so that the
 /// network need not make fine detail out of plain coordinates. Space and time are encoded apart, one above the other.
+#include <dsns/autodiff/jet_layout.hpp>
 #include <dsns/core/types.hpp>
-#include <dsns/nn/jet_layout.hpp>
 #include <dsns/sphere/harmonics.hpp>
 #include <dsns/surface/scalar_jets.hpp>
 

@@ -1,7 +1,5 @@
 #pragma once
 /// Derivatives that ride through a network as further columns: what stands in which columns of a batch.
-#include <dsns/core/types.hpp>
-
 #include <array>
 #include <cstddef>
 
@@ -15,7 +13,7 @@ struct JetLayout {
   std::array<std::array<int, 2>, 3> pairs = {};  ///< the directions of each second derivative
   int time = -1;                                 ///< which direction is time, -1 if none is
 
-  constexpr Index blocks() const { return 1 + firsts + seconds; }
+  constexpr int blocks() const { return 1 + firsts + seconds; }
   constexpr int space_directions() const { return time < 0 ? firsts : firsts - 1; }
   /// Whether second derivatives in space are among them.
   constexpr bool bends() const { return seconds > 0 && time < 0; }
