@@ -1,6 +1,7 @@
 // benchmark of differentiation: each method's time as a multiple of code written by hand, timed in turns in one process.
 //   autodiff [--json FILE] [--only METHOD]
 // and the compiler's seconds for one translation unit with the forward scalars of each library.
+#include "../ratios.hpp"
 #include "hand.hpp"
 #include "methods.hpp"
 
@@ -11,9 +12,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
-#include <fstream>
-#include <map>
 #include <random>
 
 const Data& data() {
@@ -50,45 +48,6 @@ const Data& data() {
 
 namespace {
 
-/// Time of this thread alone: other processes do not count.
-double seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
-struct Timing {
-  double microseconds, ratio;
-};
-
-/// Medians over several turns of a, then b.
-template <class A, class B>
-Timing side_by_side(const A& a, const B& b) {
-  const auto repetitions = [](const auto& f) {
-    f();
-    const double start = seconds();
-    f();
-    return std::max(1, int(0.01 / std::max(seconds() - start, 1e-9)));
-  };
-  const int na = repetitions(a), nb = repetitions(b);
-  std::vector<double> times, ratios;
-  const double stop = seconds() + 1;
-  while (times.size() < 15 && (times.size() < 5 || seconds() < stop)) {
-    const double start = seconds();
-    for (int i = 0; i < na; ++i) a();
-    const double middle = seconds();
-    for (int i = 0; i < nb; ++i) b();
-    const double end = seconds();
-    times.push_back((middle - start) / na);
-    ratios.push_back(times.back() / ((end - middle) / nb));
-  }
-  const auto median = [](std::vector<double>& v) {
-    std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
-    return v[v.size() / 2];
-  };
-  return {1e6 * median(times), median(ratios)};
-}
-
 /// The largest difference, in units of the largest entry.
 double worst(const double* a, const double* b, std::size_t n) {
   double w = 0, largest = 0;
@@ -98,8 +57,6 @@ double worst(const double* a, const double* b, std::size_t n) {
   }
   return w / largest;
 }
-
-using Results = std::map<std::string, std::map<std::string, double>>;
 
 void report(Results& results, const char* workload, const Method& method, const Timing& t, double error) {
   std::printf("%-5s %-34s %12.3f us %9.2f x hand   error %.0e%s\n", workload, method.name.c_str(), t.microseconds,
@@ -233,22 +190,5 @@ int main(int argc, char** argv) {
       }
   }
 
-  if (json.empty()) return 0;
-  std::ofstream file(json);
-  const char* separator = "{";
-  for (const auto& [workload, row] : results) {
-    file << separator << "\n  \"" << workload << "\": {";
-    const char* comma = "";
-    for (const auto& [name, ratio] : row) {
-      file << comma << "\"" << name << "\": " << ratio;
-      comma = ", ";
-    }
-    file << "}";
-    separator = ",";
-  }
-  file << "\n}\n";
-  if (!file.flush()) {
-    std::fprintf(stderr, "cannot write %s\n", json.c_str());
-    return 1;
-  }
+  return json.empty() || write_json(results, json) ? 0 : 1;
 }

@@ -6,9 +6,11 @@
 #include <dsns/autodiff/matrix_jets.hpp>
 #include <dsns/core/types.hpp>
 #include <dsns/nn/activations.hpp>
+#include <dsns/optim/soap.hpp>
 
 #include <cstdint>
 #include <random>
+#include <vector>
 
 namespace dsns {
 
@@ -29,6 +31,16 @@ struct MlpShape {
     return n;
   }
   Index parameter_count() const { return offset(layers()); }
+  /// The weights and biases in the order of the parameters.
+  std::vector<ParameterBlock> blocks_of_parameters() const {
+    std::vector<ParameterBlock> out;
+    for (int l = 0; l < layers(); ++l) {
+      const Index weights = Index(rows(l)) * cols(l);
+      out.push_back({offset(l), rows(l), cols(l)});
+      out.push_back({offset(l) + weights, rows(l), 1});
+    }
+    return out;
+  }
 };
 
 /// T is the type of the parameters.
