@@ -134,15 +134,15 @@ extern "C" {
 [[gnu::const]] Vector8d _ZGVeN8v_log(Vector8d);
 }
 #define DSNS_VECTOR_FUNCTION(name)       \
-  [](auto x) DSNS_INLINE_LAMBDA {        \
-    if constexpr (sizeof(x) == 64)       \
-      return detail::_ZGVeN8v_##name(x); \
+  [](auto a) DSNS_INLINE_LAMBDA {        \
+    if constexpr (sizeof(a) == 64)       \
+      return detail::_ZGVeN8v_##name(a); \
     else                                 \
-      return detail::_ZGVdN4v_##name(x); \
+      return detail::_ZGVdN4v_##name(a); \
   }
 inline constexpr int vector_function_lanes = 8;
 #else
-#define DSNS_VECTOR_FUNCTION(name) [](detail::Vector4d x) { return detail::_ZGVdN4v_##name(x); }
+#define DSNS_VECTOR_FUNCTION(name) [](detail::Vector4d a) { return detail::_ZGVdN4v_##name(a); }
 inline constexpr int vector_function_lanes = 4;
 #endif
 #else
