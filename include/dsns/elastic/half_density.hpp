@@ -23,22 +23,19 @@ class HalfDensityField {
   HalfDensityField(std::vector<HarmonicSurface> surfaces, double position_weight, double position_scale)
       : surfaces_(std::move(surfaces)),
         srnf_weight_(std::sqrt(1 - position_weight)),
-        position_weight_(std::sqrt(position_weight) * position_scale) {
-    for (const auto& f : surfaces_) degree_ = std::max(degree_, f.degree());
-  }
+        position_weight_(std::sqrt(position_weight) * position_scale) {}
 
   Index components() const {
     return Index(surfaces_.size()) * ((srnf_weight_ > 0 ? 3 : 0) + (position_weight_ > 0 ? 3 : 0));
   }
 
   HalfDensityJets operator()(const ChartBatch& charts) const {
-    const HarmonicJets harmonic = harmonic_jets(charts.s, degree_);
     const Index n = charts.size();
     HalfDensityJets out{Eigen::MatrixXd(components(), n), Eigen::MatrixXd(components(), n),
                         Eigen::MatrixXd(components(), n)};
     Index row = 0;
     for (const auto& surface : surfaces_) {
-      const SurfaceJets j = surface.jets(charts, harmonic);
+      const SurfaceJets j = surface.jets(charts);
       const SrnfJets q = srnf(j);
       if (srnf_weight_ > 0) {
         out.g.middleRows(row, 3) = srnf_weight_ * q.h;
@@ -63,7 +60,6 @@ class HalfDensityField {
  private:
   std::vector<HarmonicSurface> surfaces_;
   double srnf_weight_, position_weight_;
-  int degree_ = 0;
 };
 
 /// A stack of three-vectors with every block turned by O.

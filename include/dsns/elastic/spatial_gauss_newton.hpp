@@ -57,13 +57,12 @@ class SpatialProblem {
     double damping = options_->damping;
     for (int step = 0; step < steps; ++step) {
       const ChartBatch charts = charts_at(p.y);
-      const HarmonicJets basis = harmonic_jets(p.y, degree);
-      const NormalEquations system = linearise(p, charts, basis, degree);
+      const NormalEquations system = linearise(p, degree);
       std::optional<Particles> next;
       SphereVectorField v = SphereVectorField::zero(degree);
       for (int attempt = 0; attempt < 8 && !next; ++attempt) {
         const Mat3 turn = solve(system, damping, v);
-        const SphereDisplacement moved = displace(v, charts, basis);
+        const SphereDisplacement moved = displace(v, charts);
         const Eigen::VectorXd J = p.J.cwiseProduct(moved.J);
         if (moved.J.minCoeff() >= options_->min_step_jacobian && J.minCoeff() >= options_->min_jacobian &&
             moved.longest_step <= options_->longest_step) {
@@ -118,7 +117,7 @@ class SpatialProblem {
     return (target_ - rotate_blocks(p.O, moved)).colwise().squaredNorm() * weights_;
   }
 
-  NormalEquations linearise(const Particles& p, const ChartBatch& charts, const HarmonicJets& basis, int degree) const {
+  NormalEquations linearise(const Particles& p, int degree) const {
     const Index count = harmonic_count(degree) - 1, unknowns = 2 * count + 3, n = p.y.cols();
     const Eigen::MatrixXd target = rotate_blocks(p.O.transpose(), target_);
     std::vector<Eigen::MatrixXd> matrices(std::size_t((n + chunk_size - 1) / chunk_size));
@@ -126,21 +125,19 @@ class SpatialProblem {
     NormalEquations system{{}, {}, harmonic_degrees(degree).tail(count)};
     const Eigen::RowVectorXd half_divergence = -0.5 * (system.degrees * (system.degrees + 1)).matrix().transpose();
     for_chunks(n, [&](int chunk, Index first, Index points) {
+      using PointByPoint = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+      const auto basis = harmonic_tangents<PointByPoint>(charts_at(p.y.middleCols(first, points)), degree);
       Eigen::MatrixXd rows(6 * points, unknowns);
       Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
       Eigen::Matrix<double, 6, Eigen::Dynamic> B = Eigen::MatrixXd::Zero(6, unknowns);
       B.rightCols<3>().bottomRows<3>().setIdentity();
       for (Index i = first; i < first + points; ++i) {
-        const auto along = [&](const Mat3X& e) -> Eigen::RowVectorXd {
-          return e(0, i) * basis.dx.row(i).tail(count) + e(1, i) * basis.dy.row(i).tail(count) +
-                 e(2, i) * basis.dz.row(i).tail(count);
-        };
-        const Eigen::RowVectorXd g1 = along(charts.e1), g2 = along(charts.e2);
-        B.row(0).head(count) = half_divergence.cwiseProduct(basis.y.row(i).tail(count));
-        B.row(1).head(count) = g1;
-        B.row(1).segment(count, count) = -g2;
-        B.row(2).head(count) = g2;
-        B.row(2).segment(count, count) = g1;
+        const Index at = i - first;
+        B.row(0).head(count) = half_divergence.cwiseProduct(basis.y.row(at).tail(count));
+        B.row(1).head(count) = basis.yu.row(at).tail(count);
+        B.row(1).segment(count, count) = -basis.yv.row(at).tail(count);
+        B.row(2).head(count) = basis.yv.row(at).tail(count);
+        B.row(2).segment(count, count) = basis.yu.row(at).tail(count);
         const Eigen::MatrixXd U = columns(p.field, i);
         const double root = std::sqrt(p.J[i]);
         const Eigen::VectorXd residual = target.col(i) - root * p.field.g.col(i);

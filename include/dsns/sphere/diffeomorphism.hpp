@@ -47,7 +47,7 @@ class SphereDiffeomorphism {
 };
 
 inline SphereDisplacement SphereDiffeomorphism::displacement(const ChartBatch& charts) const {
-  constexpr Index tile = 64;  // points that go through all increments together, so that their harmonics stay in cache
+  constexpr Index tile = 64;  // points that go through all increments together, so that their charts stay in cache
   const Index n = charts.size();
   SphereDisplacement total{(rotation_ * charts.s).colwise().normalized(), rotation_ * charts.e1, rotation_ * charts.e2,
                            Eigen::VectorXd::Ones(n)};
@@ -55,7 +55,7 @@ inline SphereDisplacement SphereDiffeomorphism::displacement(const ChartBatch& c
     const Index count = std::min(tile, n - first);
     for (const auto& v : increments_) {
       const ChartBatch here = charts_at(total.y.middleCols(first, count));
-      const SphereDisplacement step = displace(v, here, harmonic_jets(here.s, v.degree));
+      const SphereDisplacement step = displace(v, here);
       for (Index i = 0; i < count; ++i)
         for (Mat3X* image : {&total.y1, &total.y2}) {
           const Vec3d t = image->col(first + i);
@@ -80,11 +80,11 @@ inline Mat3X SphereDiffeomorphism::inverse(const Mat3X& y) const {
   for (auto v = increments_.rbegin(); v != increments_.rend(); ++v) {
     SphereVectorField back{v->degree, -v->a, -v->b};
     ChartBatch here = charts_at(target);
-    Mat3X s = displace(back, here, harmonic_jets(here.s, v->degree)).y;
+    Mat3X s = displace(back, here).y;
     double worst = 1;
     for (int iteration = 0; iteration < 30 && worst > 1e-14; ++iteration) {
       here = charts_at(s);
-      const SphereDisplacement image = displace(*v, here, harmonic_jets(s, v->degree));
+      const SphereDisplacement image = displace(*v, here);
       worst = 0;
       for (Index i = 0; i < s.cols(); ++i) {
         const Vec3d miss = target.col(i) - image.y.col(i);
@@ -108,9 +108,9 @@ inline Mat3X SphereDiffeomorphism::inverse(const Mat3X& y) const {
 /// The field R v(R^T s), exactly: harmonics of one degree turn into each other.
 inline SphereVectorField rotated(const SphereVectorField& v, const Mat3& R) {
   const SphereQuadrature q = sphere_quadrature(v.degree + 1);
-  const Eigen::MatrixXd before = harmonics((R.transpose() * q.points).colwise().normalized(), v.degree);
-  const Eigen::MatrixXd turn = harmonics(q.points, v.degree).transpose() * q.weights.asDiagonal() * before;
-  return {v.degree, turn * v.a, turn * v.b};
+  const HarmonicCoefficients<2> turned = harmonic_coefficients<2>(
+      harmonic_sum<2>(detail::potentials(v), (R.transpose() * q.points).colwise().normalized()), q, v.degree);
+  return {v.degree, turned.col(0), turned.col(1)};
 }
 
 /// outer(inner(s)).

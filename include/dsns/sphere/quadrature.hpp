@@ -43,8 +43,9 @@ inline GaussLegendre gauss_legendre(int n) {
   return rule;
 }
 
-/// n x 2n nodes, exact for spherical polynomials of degree 2n - 1.
-/// accuracy 1e-13 [sphere/quadrature_test: orthonormality of harmonics]
+/// n x 2n nodes, exact for polynomials in (x, y, z) of degree 2n - 1, products of harmonics of degrees that add up to it among
+/// them, and not for all of degree 2n.
+/// accuracy 1e-13 [sphere/quadrature_test]
 inline SphereQuadrature sphere_quadrature(int n) {
   const GaussLegendre rule = gauss_legendre(n);
   const int sectors = 2 * n;

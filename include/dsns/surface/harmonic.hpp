@@ -9,11 +9,8 @@ namespace dsns {
 /// coefficients (degree + 1)^2 x 3.
 class HarmonicSurface {
  public:
-  explicit HarmonicSurface(Eigen::MatrixX3d coefficients) : coefficients_(std::move(coefficients)) {
-    degree_ = static_cast<int>(std::lround(std::sqrt(double(coefficients_.rows())))) - 1;
-    require(harmonic_count(degree_) == coefficients_.rows(), "HarmonicSurface: ", coefficients_.rows(),
-            " coefficients a coordinate, give the square of a whole number");
-  }
+  explicit HarmonicSurface(Eigen::MatrixX3d coefficients)
+      : coefficients_(std::move(coefficients)), degree_(harmonic_degree(coefficients_.rows())) {}
 
   int degree() const { return degree_; }
   const Eigen::MatrixX3d& coefficients() const { return coefficients_; }
@@ -26,33 +23,16 @@ class HarmonicSurface {
       for (int c = 0; c < 3; ++c) sum[c] += coefficients_(k, c) * y[k];
     return sum;
   }
-  Mat3X positions(const Mat3X& s) const { return (harmonics(s, degree_) * coefficients_).transpose(); }
-  SurfaceJets jets(const ChartBatch& c) const { return jets(c, harmonic_jets(c.s, degree_)); }
-
-  /// The same from harmonics already evaluated at the charts' points, of any degree at least this one's.
-  SurfaceJets jets(const ChartBatch& c, const HarmonicJets& h) const {
-    const auto times = [&](const Eigen::MatrixXd& m) {
-      return Mat3X((m.leftCols(coefficients_.rows()) * coefficients_).transpose());
-    };
-    const Mat3X x = times(h.dx), y = times(h.dy), z = times(h.dz), xx = times(h.dxx), yy = times(h.dyy),
-                zz = times(h.dzz), xy = times(h.dxy), xz = times(h.dxz), yz = times(h.dyz);
-    SurfaceJets out(c.size());
-    out.f = times(h.y);
-    for (Index i = 0; i < c.size(); ++i) {
-      const Vec3d s = c.s.col(i), a = c.e1.col(i), b = c.e2.col(i);
-      const auto along = [&](const Vec3d& p) -> Vec3d { return x.col(i) * p[0] + y.col(i) * p[1] + z.col(i) * p[2]; };
-      const auto twice = [&](const Vec3d& p, const Vec3d& q) -> Vec3d {
-        return xx.col(i) * (p[0] * q[0]) + yy.col(i) * (p[1] * q[1]) + zz.col(i) * (p[2] * q[2]) +
-               xy.col(i) * (p[0] * q[1] + p[1] * q[0]) + xz.col(i) * (p[0] * q[2] + p[2] * q[0]) +
-               yz.col(i) * (p[1] * q[2] + p[2] * q[1]);
-      };
-      const Vec3d radial = along(s);  // s_uu = s_vv = -s
-      out.fu.col(i) = along(a);
-      out.fv.col(i) = along(b);
-      out.fuu.col(i) = twice(a, a) - radial;
-      out.fuv.col(i) = twice(a, b);
-      out.fvv.col(i) = twice(b, b) - radial;
-    }
+  Mat3X positions(const Mat3X& s) const { return harmonic_sum<3>(coefficients_, s); }
+  SurfaceJets jets(const ChartBatch& c) const {
+    auto [f, fu, fv, fuu, fuv, fvv] = harmonic_sum_jets<3>(coefficients_, c);
+    SurfaceJets out(0);
+    out.f = std::move(f);
+    out.fu = std::move(fu);
+    out.fv = std::move(fv);
+    out.fuu = std::move(fuu);
+    out.fuv = std::move(fuv);
+    out.fvv = std::move(fvv);
     return out;
   }
 
@@ -72,8 +52,7 @@ class HarmonicSurface {
 
 /// Projection of positions at the nodes of a quadrature, 3 x n, on the harmonics up to `degree`.
 inline HarmonicSurface project_on_harmonics(const Mat3X& values, const SphereQuadrature& q, int degree) {
-  const Eigen::MatrixXd y = harmonics(q.points, degree);
-  return HarmonicSurface(y.transpose() * q.weights.asDiagonal() * values.transpose());
+  return HarmonicSurface(harmonic_coefficients<3>(values, q, degree));
 }
 
 /// Nodes for projections up to `degree`: exact for surfaces that are band-limited to 3 degree + 15.
