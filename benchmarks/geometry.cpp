@@ -25,7 +25,8 @@ Results results;
 template <class A, class B>
 void measure(const char* surface, const char* order, const char* against, Index points, const A& a, const B& b) {
   const Timing t = side_by_side(a, b);
-  std::printf("%-24s %-8s %9.4f us a point %8.3f x %s\n", surface, order, t.microseconds / double(points), t.ratio, against);
+  std::printf("%-24s %-8s %9.4f us a point %8.3f x %s\n", surface, order, t.microseconds / double(points), t.ratio,
+              against);
   std::fflush(stdout);
   results[surface][order] = t.ratio;
 }
@@ -61,9 +62,12 @@ void ellipsoid() {
       sink = out.f(0, 0);
     };
   };
-  measure("ellipsoid", "value", "by hand", c.size(), [&] { sink = positions(e, c.s)(0, 0); }, by_hand(&ByHand::value));
-  measure("ellipsoid", "first", "by hand", c.size(), [&] { sink = tangents(e, c).f(0, 0); }, by_hand(&ByHand::first));
-  measure("ellipsoid", "second", "by hand", c.size(), [&] { sink = jets(e, c).f(0, 0); }, by_hand(&ByHand::second));
+  measure(
+      "ellipsoid", "value", "by hand", c.size(), [&] { sink = positions(e, c.s)(0, 0); }, by_hand(&ByHand::value));
+  measure(
+      "ellipsoid", "first", "by hand", c.size(), [&] { sink = tangents(e, c).f(0, 0); }, by_hand(&ByHand::first));
+  measure(
+      "ellipsoid", "second", "by hand", c.size(), [&] { sink = jets(e, c).f(0, 0); }, by_hand(&ByHand::second));
 }
 
 template <class T>
@@ -74,14 +78,18 @@ void network(const char* name, const SurfaceEncoding& encoding, int width, int b
   const ChartBatch c = charts_at(fibonacci_sphere(points).points);
   const auto plain = [&] { sink = surface.positions(c.s, 0.5)(0, 0); };
   measure(name, "value", "plain evaluation", points, plain, plain);
-  measure(name, "first", "plain evaluation", points, [&] { sink = surface.tangents(c, 0.5).f(0, 0); }, plain);
-  measure(name, "second", "plain evaluation", points, [&] { sink = surface.jets(c, 0.5).f(0, 0); }, plain);
+  measure(
+      name, "first", "plain evaluation", points, [&] { sink = surface.tangents(c, 0.5).f(0, 0); }, plain);
+  measure(
+      name, "second", "plain evaluation", points, [&] { sink = surface.jets(c, 0.5).f(0, 0); }, plain);
 }
 
 void harmonic_basis(int degree) {
   const ChartBatch c = charts_at(fibonacci_sphere(1024).points);
   const std::string name = "harmonics_" + std::to_string(degree);
-  const auto reference = [&](Index first) { sink = reference::harmonic_jets(c.s.middleCols(first, 32), degree).y(0, 0); };
+  const auto reference = [&](Index first) {
+    sink = reference::harmonic_jets(c.s.middleCols(first, 32), degree).y(0, 0);
+  };
   const auto tiles = [&](const auto& body) {
     return [&] {
       for (Index first = 0; first < c.size(); first += 32) body(first);

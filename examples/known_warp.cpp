@@ -1,8 +1,8 @@
 // Registration against the truth: a body is turned, its sphere warped by about 5 degrees and its clock bent; registration,
 // which is told none of this, must find the three again.  known_warp [FILE.glb#Clip]; without a file, a body from a formula.
+#include <dsns/elastic/normalization.hpp>
 #include <dsns/io/gltf_reader.hpp>
 #include <dsns/io/source_name.hpp>
-#include <dsns/elastic/normalization.hpp>
 #include <dsns/mesh/repair.hpp>
 #include <dsns/mesh/sphere_mesh.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>

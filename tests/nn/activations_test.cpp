@@ -28,8 +28,9 @@ TEMPLATE_TEST_CASE("activations: columns equal the scalar path with derivatives 
     const Third jet3 = activate(activation, Third::variable(Jet2<T, 1>::variable(x[i], 0), 0));
     const auto& jet = jet3.f;
     const T scale = std::max(T(1), std::abs(x[i]));
-    const T errors[] = {y[i] - jet.f, slope[i] - jet.g[0], y2[i] - jet.f, slope2[i] - jet.g[0], bend[i] - jet.h[0],
-                        y3[i] - jet.f, slope3[i] - jet.g[0], bend3[i] - jet.h[0], third[i] - jet3.g[0].h[0]};
+    const T errors[] = {y[i] - jet.f,         slope[i] - jet.g[0], y2[i] - jet.f,
+                        slope2[i] - jet.g[0], bend[i] - jet.h[0],  y3[i] - jet.f,
+                        slope3[i] - jet.g[0], bend3[i] - jet.h[0], third[i] - jet3.g[0].h[0]};
     for (const T error : errors) worst = std::abs(error) / scale > worst ? std::abs(error) / scale : worst;
     CHECK(std::isfinite(y[i] + slope[i] + bend[i] + third[i]));
   }

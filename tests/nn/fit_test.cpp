@@ -2,6 +2,7 @@
 
 #include <dsns/nn/fit.hpp>
 #include <dsns/surface/analytic.hpp>
+#include <dsns/surface/surface_error.hpp>
 
 namespace fit_test {
 
@@ -30,7 +31,7 @@ FitOptions quick() {
   o.times = 16;
   o.batch = 256;
   o.steps = 2000;
-  o.learning_rate = 1e-3;
+  o.learning_rate = 1e-2;
   return o;
 }
 
@@ -106,14 +107,67 @@ TEST_CASE("fit: points come from the caller's sampler", "[nn]") {
 
 TEST_CASE("fit: options without meaning are refused, divergence is reported", "[nn]") {
   FitOptions o = quick();
-  o.batch = 100;
+  o.batch = 0;
   CHECK_THROWS_AS(fit_neural_surface(PulsingEllipsoid{}, o), InvalidArgument);
   o = quick();
-  o.times = 1;
+  o.times = 0;
   CHECK_THROWS_AS(fit_neural_surface(PulsingEllipsoid{}, o), InvalidArgument);
   o = quick();
   o.learning_rate = 1e30;
   CHECK_THROWS_AS(fit_neural_surface(PulsingEllipsoid{}, o), Error);
+}
+
+TEST_CASE("fit: a loss of tangents or normals makes better normals in as many steps", "[nn]") {
+  FitOptions o = quick();
+  o.encoding.harmonic_degree = 6;
+  o.points = 300;  // few points leave the normals between them open
+  o.steps = 300;
+  o.batch = 512;
+  std::mt19937_64 random(5);
+  const Mat3X s = detail::uniform_sphere_points(300, random);
+  const auto normal_error = [&](double tangents, double normals) {
+    o.loss = {tangents, normals};
+    return compare(fit_neural_surface(PulsingEllipsoid{}, o).surface, PulsingEllipsoid{}, s, {0.2, 0.7})
+        .normal_angle_mean_deg;
+  };
+  const double positions_alone = normal_error(0, 0), with_tangents = normal_error(0.3, 0),
+               with_normals = normal_error(0, 0.3);
+  INFO("degrees: " << positions_alone << ", " << with_tangents << ", " << with_normals);
+  CHECK(with_tangents < 0.5 * positions_alone);
+  CHECK(with_normals < 0.5 * positions_alone);
+}
+
+TEST_CASE("fit: a surface at rest needs one time", "[nn]") {
+  FitOptions o = quick();
+  o.encoding.time_frequencies = 0;
+  o.times = 1;
+  o.steps = 300;
+  const FitResult fit = fit_neural_surface(PulsingEllipsoid{}, o);
+  std::mt19937_64 random(5);
+  const SurfaceError e =
+      compare(fit.surface, PulsingEllipsoid{}, detail::uniform_sphere_points(100, random), {0}, fit.surface.scale());
+  CHECK(e.msd < 1e-5);
+}
+
+TEST_CASE("fit: an observer sees the fit come closer, and a target ends it", "[nn]") {
+  FitOptions o = quick();
+  std::vector<double> errors;
+  o.observe_every = 1e-9;
+  o.steps = 200;
+  o.observer = [&](const FitState& state) {
+    CHECK(state.steps == int(errors.size()));
+    errors.push_back(held_out_error(state.surface));
+  };
+  fit_neural_surface(PulsingEllipsoid{}, o);
+  REQUIRE(errors.size() == 200);
+  CHECK(errors.back() < 0.01 * errors.front());
+  o.observer = {};
+  o.target_msd = 1e-3;
+  o.steps = 2000;
+  const FitSummary summary = fit_neural_surface(PulsingEllipsoid{}, o).summary;
+  CHECK(summary.stopped == FitStop::target_msd);
+  CHECK(summary.loss.back() < 1e-3);
+  CHECK(summary.steps < 2000);
 }
 
 TEST_CASE("fit: the paper's configuration has its size", "[nn]") {
@@ -125,6 +179,7 @@ TEST_CASE("fit: the paper's configuration has its size", "[nn]") {
   CHECK(shape.parameter_count() == 12681219);
   CHECK(o.batch == 80000);
   CHECK(o.learning_rate == 1e-4);
+  CHECK(o.optimizer.kind == OptimizerKind::rmsprop);
 }
 
 }  // namespace fit_test

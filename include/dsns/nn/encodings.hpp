@@ -6,6 +6,9 @@
 #include <dsns/sphere/harmonics.hpp>
 #include <dsns/surface/scalar_jets.hpp>
 
+#include <cmath>
+#include <type_traits>
+
 namespace dsns {
 
 /// Space: real spherical harmonics of degree l = 1 to `harmonic_degree` (0: none), root mean square l^-harmonic_decay,
@@ -37,8 +40,7 @@ struct SurfaceEncoding {
       out.head(row) = harmonics<T>(s, harmonic_degree).tail(row);
       for (Index k = 0; k < row; ++k) out[k] *= harmonic_scale(k);
     }
-    for (int k = 0; k < space_octaves; ++k)
-      for (const T& x : s) append_waves(out, row, T(std::ldexp(space_base, k) * x));
+    append_space_waves(out, row, s);
     return out;
   }
   template <class T>
@@ -55,28 +57,20 @@ struct SurfaceEncoding {
   void fill(const ChartBatch& charts, Index first, Index n, double t, const JetLayout& layout,
             Eigen::MatrixX<T>& x) const {
     x.setZero();
-    const Index rows = space_features();
-    for (Index i = 0; i < n; ++i) {
-      const auto write = [&](Index block, Index k, double value) { x(k, block * n + i) = T(value); };
-      if (layout.bends()) {
-        const auto jet = space(detail::chart_jet(charts, first + i));
-        for (Index k = 0; k < rows; ++k) {
-          const auto& [f, g, h] = jet[k];
-          const double blocks[] = {f, g[0], g[1], h[0], h[1], h[2]};
-          for (Index b = 0; b < 6; ++b) write(b, k, blocks[b]);
-        }
-      } else if (layout.space_directions() > 0) {
-        const auto jet = space(detail::chart_dual(charts, first + i));
-        for (Index k = 0; k < rows; ++k) {
-          write(0, k, jet[k].f);
-          write(1, k, jet[k].g[0]);
-          write(2, k, jet[k].g[1]);
-        }
-      } else {
-        x.col(i).head(rows) = space(Vec3d(charts.s.col(first + i))).template cast<T>();
-      }
+    const bool framed = layout.space_directions() > 0;
+    const ChartBatch here{charts.s.middleCols(first, n), framed ? charts.e1.middleCols(first, n) : Mat3X(),
+                          framed ? charts.e2.middleCols(first, n) : Mat3X()};
+    if (harmonic_degree > 0) fill_harmonics(here, layout, x);
+    if (space_octaves > 0) {
+      if (layout.bends())
+        fill_waves(here, x, [&](Index i) { return detail::chart_jet(here, i); });
+      else if (framed)
+        fill_waves(here, x, [&](Index i) { return detail::chart_dual(here, i); });
+      else
+        fill_waves(here, x, [&](Index i) { return Vec3d(here.s.col(i)); });
     }
     const auto moving = time(detail::TimeDual::variable(t, 0));
+    const Index rows = space_features();
     for (Index k = 0; k < moving.size(); ++k) {
       x.row(rows + k).head(n).setConstant(T(moving[k].f));
       if (layout.time >= 0) x.row(rows + k).segment((1 + layout.time) * n, n).setConstant(T(moving[k].g[0]));
@@ -84,9 +78,59 @@ struct SurfaceEncoding {
   }
 
  private:
+  template <class T>
+  void fill_harmonics(const ChartBatch& here, const JetLayout& layout, Eigen::MatrixX<T>& x) const {
+    using M =
+        Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // whose transpose has columns of points
+    const Index n = here.size(), count = harmonic_count(harmonic_degree) - 1;
+    Eigen::VectorX<T> scale(count);
+    for (Index l = 1; l <= harmonic_degree; ++l)
+      scale.segment(l * l - 1, 2 * l + 1).setConstant(T(harmonic_scale(l * l - 1)));
+    const auto write = [&](Index block, const M& y) {
+      x.block(0, block * n, count, n) = scale.asDiagonal() * y.rightCols(count).transpose();
+    };
+    if (layout.bends()) {
+      const auto h = harmonic_jets<M>(here, harmonic_degree);
+      const M* const blocks[] = {&h.y, &h.yu, &h.yv, &h.yuu, &h.yuv, &h.yvv};
+      for (Index b = 0; b < 6; ++b) write(b, *blocks[b]);
+    } else if (layout.space_directions() > 0) {
+      const auto h = harmonic_tangents<M>(here, harmonic_degree);
+      write(0, h.y);
+      write(1, h.yu);
+      write(2, h.yv);
+    } else {
+      write(0, harmonics<M>(here.s, harmonic_degree));
+    }
+  }
+  template <class T, class Chart>
+  void fill_waves(const ChartBatch& here, Eigen::MatrixX<T>& x, const Chart& chart) const {
+    const Index n = here.size(), rows = 6 * Index(space_octaves), begin = space_features() - rows;
+    for (Index i = 0; i < n; ++i) {
+      const auto s = chart(i);
+      using X = std::decay_t<decltype(s[0])>;
+      Eigen::VectorX<X> waves(rows);
+      append_space_waves(waves, 0, s);
+      for (Index k = 0; k < rows; ++k) {
+        if constexpr (std::is_same_v<X, double>) {
+          x(begin + k, i) = T(waves[k]);
+        } else {
+          x(begin + k, i) = T(waves[k].f);
+          for (Index d = 0; d < 2; ++d) x(begin + k, (1 + d) * n + i) = T(waves[k].g[std::size_t(d)]);
+          if constexpr (requires { waves[k].h; })
+            for (Index d = 0; d < 3; ++d) x(begin + k, (3 + d) * n + i) = T(waves[k].h[std::size_t(d)]);
+        }
+      }
+    }
+  }
+
   double harmonic_scale(Index k) const {
     const double degree = std::floor(std::sqrt(double(k + 1)));
     return std::sqrt(4 * pi) * std::pow(degree, -harmonic_decay);
+  }
+  template <class T>
+  void append_space_waves(Eigen::VectorX<T>& out, Index row, const Vec3<T>& s) const {
+    for (int k = 0; k < space_octaves; ++k)
+      for (const T& x : s) append_waves(out, row, T(std::ldexp(space_base, k) * x));
   }
   template <class T>
   static void append_waves(Eigen::VectorX<T>& out, Index& row, const T& angle) {

@@ -86,8 +86,8 @@ inline void check_fit_options(const FitOptions& o) {
           "; give at least 1 of each");
   require(o.learning_rate > 0 && o.seconds >= 0 && o.target_msd >= 0, "fit: learning rate ", o.learning_rate, ", ",
           o.seconds, " seconds and a target of ", o.target_msd, " must not be negative");
-  require(o.loss.tangents >= 0 && o.loss.normals >= 0, "fit: loss weights ", o.loss.tangents, " and ",
-          o.loss.normals, " must not be negative");
+  require(o.loss.tangents >= 0 && o.loss.normals >= 0, "fit: loss weights ", o.loss.tangents, " and ", o.loss.normals,
+          " must not be negative");
 }
 
 /// Wall and processor time since a start, of which spans can be left out.

@@ -18,9 +18,9 @@ typename MatrixTape<T>::Node jet_error(MatrixTape<T>& tape, typename MatrixTape<
                                        const Eigen::MatrixX<T>& target, const BlockWeights<layout>& weights) {
   using Tape = MatrixTape<T>;
   const auto v = tape.value(y);
-  require(v.rows() == target.rows() && v.cols() == target.cols() && v.cols() % layout.blocks() == 0, "jet_error: ",
-          v.rows(), " x ", v.cols(), " against a target of ", target.rows(), " x ", target.cols(), " in ",
-          layout.blocks(), " blocks");
+  require(v.rows() == target.rows() && v.cols() == target.cols() && v.cols() % layout.blocks() == 0,
+          "jet_error: ", v.rows(), " x ", v.cols(), " against a target of ", target.rows(), " x ", target.cols(),
+          " in ", layout.blocks(), " blocks");
   auto& o = tape.operation(1, 1, {y}, [](Tape& t, const typename Tape::Operation& error) {
     t.accumulate(error.operands[0], (T(2) * error.adjoint(0, 0)) * error.kept[0]);
   });
@@ -30,7 +30,7 @@ typename MatrixTape<T>::Node jet_error(MatrixTape<T>& tape, typename MatrixTape<
   T sum(0);
   for (int b = 0; b < layout.blocks(); ++b) {
     auto block = weighted.middleCols(b * m, m);
-    const T weight(weights[std::size_t(b)]);
+    const T weight = T(weights[std::size_t(b)]);
     sum += weight * block.squaredNorm();
     block *= weight;
   }
@@ -47,8 +47,8 @@ typename MatrixTape<T>::Node normal_error(MatrixTape<T>& tape, typename MatrixTa
   static_assert(layout.space_directions() == 2, "normal_error: the layout has no derivatives in u and v");
   using Tape = MatrixTape<T>;
   const auto v = tape.value(y);
-  require(v.rows() == 3 && normals.rows() == 3 && v.cols() == layout.blocks() * normals.cols(), "normal_error: ",
-          v.rows(), " x ", v.cols(), " jets for normals of ", normals.rows(), " x ", normals.cols());
+  require(v.rows() == 3 && normals.rows() == 3 && v.cols() == layout.blocks() * normals.cols(),
+          "normal_error: ", v.rows(), " x ", v.cols(), " jets for normals of ", normals.rows(), " x ", normals.cols());
   auto& o = tape.operation(1, 1, {y}, [](Tape& t, const typename Tape::Operation& error) {
     auto& back = t.scratch();
     const Eigen::Index m = error.kept[0].cols();

@@ -6,7 +6,7 @@
 #include <dsns/autodiff/matrix_jets.hpp>
 #include <dsns/core/types.hpp>
 #include <dsns/nn/activations.hpp>
-#include <dsns/optim/soap.hpp>
+#include <dsns/optim/optimizer.hpp>
 
 #include <cstdint>
 #include <random>

@@ -76,7 +76,9 @@ class SurfaceProblem {
   template <AnimatedSurface F>
   SurfaceProblem(const F& target, const SurfaceEncoding& encoding, const Mat3X& points, std::vector<double> times,
                  const LossWeights& weights)
-      : points_(points.cols()), time_(encoding.time_features(), Index(times.size())), with_normals_(weights.normals > 0) {
+      : points_(points.cols()),
+        time_(encoding.time_features(), Index(times.size())),
+        with_normals_(weights.normals > 0) {
     weights_.fill(0);
     weights_[0] = 1;
     if constexpr (layout.blocks() == 3) weights_[1] = weights_[2] = weights.tangents;
@@ -84,8 +86,7 @@ class SurfaceProblem {
     const ChartBatch charts = charts_at(points);
     space_.resize(encoding.space_features(), points_ * layout.blocks());
     encode_space(encoding, charts);
-    for (Index k = 0; k < time_.cols(); ++k)
-      time_.col(k) = encoding.time(times[std::size_t(k)]).template cast<T>();
+    for (Index k = 0; k < time_.cols(); ++k) time_.col(k) = encoding.time(times[std::size_t(k)]).template cast<T>();
     sample(target, charts, times);
   }
 

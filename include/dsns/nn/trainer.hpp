@@ -56,9 +56,9 @@ class Trainer {
         optimizer_(network_.shape().blocks_of_parameters(), options.optimizer),
         gradient_(network_.parameters().size()),
         order_(std::size_t(problem.samples())) {
-    require(options.batch > 0 && options.threads > 0 && options.clip_norm >= 0 && problem.samples() > 0, "Trainer: a batch of ",
-            options.batch, " of ", problem.samples(), " samples, ", options.threads, " threads, gradients up to ",
-            options.clip_norm, "; give at least 1, 1, 1 and 0");
+    require(options.batch > 0 && options.threads > 0 && options.clip_norm >= 0 && problem.samples() > 0,
+            "Trainer: a batch of ", options.batch, " of ", problem.samples(), " samples, ", options.threads,
+            " threads, gradients up to ", options.clip_norm, "; give at least 1, 1, 1 and 0");
     batch_ = std::min<Index>(options.batch, problem.samples());
     const Index tiles = (batch_ + tile_ - 1) / tile_;
     // Groups of tiles are summed one after the other and then together, so that the sum does not depend on the threads.

@@ -6,8 +6,7 @@
 ///   Adam<float> other(n, options);
 ///   other.restore(saved);                            // other.step(...) now moves exactly as adam.step(...)
 #include <dsns/core/errors.hpp>
-
-#include <Eigen/Core>
+#include <dsns/core/types.hpp>
 
 #include <concepts>
 #include <cstdint>
@@ -27,6 +26,13 @@ struct OptimizerState {
 
   std::int64_t steps = 0;
   std::vector<Array> arrays;
+};
+
+/// A stretch of flat parameters that is a matrix, column after column; with one column it is a vector.
+struct ParameterBlock {
+  Index offset = 0;
+  Index rows = 1;
+  Index cols = 1;
 };
 
 /// Moves flat parameters against a gradient. The rate is given with each step, by a Schedule for instance.

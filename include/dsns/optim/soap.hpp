@@ -23,13 +23,6 @@
 
 namespace dsns {
 
-/// A stretch of flat parameters that is a matrix, column after column; with one column it is a vector.
-struct ParameterBlock {
-  Index offset = 0;
-  Index rows = 1;
-  Index cols = 1;
-};
-
 struct SoapOptions {
   double beta1 = 0.95;
   double beta2 = 0.95;
