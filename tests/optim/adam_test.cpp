@@ -61,7 +61,7 @@ TEST_CASE("adam: weight decay as PyTorch's AdamW, which shrinks the parameters f
     for (double& x : g) x = normal(random);
     optimizer.step(theta, g, rate);
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      const long double x = g[static_cast<Eigen::Index>(i)];
+      const auto x = static_cast<long double>(g[static_cast<Eigen::Index>(i)]);
       expected[i] *= 1 - static_cast<long double>(rate) * 0.3L;
       m[i] += 0.1L * (x - m[i]);
       v[i] += 0.001L * (x * x - v[i]);

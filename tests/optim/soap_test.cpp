@@ -243,6 +243,21 @@ TEST_CASE("soap: bases stay orthonormal in single precision", "[optim]") {
   CHECK((right.transpose() * right - Eigen::MatrixXf::Identity(24, 24)).norm() < 1e-5f);
 }
 
+TEST_CASE("soap: the size of the gradients does not matter, though their fourth powers vanish", "[optim]") {
+  SoapOptions options;
+  options.refresh = 2;
+  options.epsilon = 0;
+  Soap<float> optimizer({{0, 6, 4}}, options), small({{0, 6, 4}}, options);
+  std::mt19937_64 random(8);
+  Eigen::VectorXf theta = Eigen::VectorXf::Zero(24), other = theta;
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::VectorXf g = random_matrix(24, 1, random).cast<float>();
+    optimizer.step(theta, g, 1e-2);
+    small.step(other, std::ldexp(1.0f, -45) * g, 1e-2);  // the factors are about 1e-27, the squares of theirs 1e-54
+    CHECK((theta - other).norm() == Approx(0).margin(1e-6));
+  }
+}
+
 TEST_CASE("soap: gradients of zero, at the start too, do no harm", "[optim]") {
   Soap<float> optimizer({{0, 3, 5}, {15, 3, 1}}, {.refresh = 2});
   Eigen::VectorXf theta = Eigen::VectorXf::Ones(18);
