@@ -10,8 +10,8 @@
 namespace dsns {
 
 /// |X/a|^p + |Y/b|^p + |Z/c|^p = 1 for an even exponent p, the sphere projected on it along rays before it is stretched.
-/// Analytic everywhere: for other p the powers are not smooth on the coordinate planes (only twice differentiable for p in
-/// (2, 3), not even that below 2). From p = 4 on it is flat where the axes meet it, K = H = 0.
+/// Analytic everywhere; for other p the powers are not smooth on the coordinate planes (C2 but not C4 for p between 2 and 4,
+/// not even C2 below 2). From p = 4 on it is flat where the axes meet it, K = H = 0.
 template <class N>
 class SuperquadricOf {
  public:
