@@ -16,6 +16,7 @@
 #include <dsns/stats/moving_mean.hpp>
 #include <dsns/surface/analytic.hpp>
 #include <dsns/surface/any_surface.hpp>
+#include <dsns/surface/motion.hpp>
 #include <dsns/surface/sampled.hpp>
 #include <dsns/surface/surface_error.hpp>
 #include <dsns/version.hpp>

@@ -43,6 +43,9 @@ static_assert(Surface<Ellipsoid> && Surface<HarmonicSurface> && Surface<WithMemb
 static_assert(Surface<AtTime<LimbedBody>> && AnimatedSurface<LimbedBody> && AnimatedSurface<AnyAnimatedSurface>);
 static_assert(!Surface<int> && !Surface<DoubleOnly>, "a surface without second-order jets is refused");
 static_assert(!AnimatedSurface<Ellipsoid>);
+static_assert(!std::is_constructible_v<RegisteredSurface<LimbedBody>, LimbedBody, Mat3, SphereDiffeomorphism>,
+              "a registered surface refers to the body, so a temporary is refused");
+static_assert(std::is_constructible_v<RegisteredSurface<LimbedBody>, const LimbedBody&, Mat3, SphereDiffeomorphism>);
 
 TEST_CASE("jets come from the member, the free function or the scalar, in this order", "[surface]") {
   const ChartBatch c = charts_at(test::sphere_points());

@@ -10,9 +10,11 @@
 /// Each takes the member function of that name where the surface has one (the way of batches: networks, sampled meshes),
 /// else a free function found by argument-dependent lookup (jets only), else the call operator with a differentiating
 /// scalar: f(Vec3<Jet2<double>>), F(Vec3<Dual<double, 1>>, Dual<double, 1>).
+#include <dsns/surface/held.hpp>
 #include <dsns/surface/scalar_jets.hpp>
 
 #include <concepts>
+#include <utility>
 
 namespace dsns {
 
@@ -207,11 +209,11 @@ MotionJets motion_jets(const F& f, const ChartBatch& c, double t) {
     return detail::motion_by_scalars<detail::LanesOf<F>>(f, c, t);
 }
 
-/// A moving surface frozen at one time: a Surface. Refers to the moving surface, which must outlive it.
+/// A moving surface frozen at one time: a Surface. F is as detail::HeldAs says.
 template <class F>
 class AtTime {
  public:
-  AtTime(const F& surface, double t) : surface_(&surface), t_(t) {}
+  AtTime(F surface, double t) : surface_(std::forward<F>(surface)), t_(t) {}
 
   Vec3d operator()(const Vec3d& s) const { return (*surface_)(s, t_); }
   SurfaceJets jets(const ChartBatch& c) const { return dsns::jets(*surface_, c, t_); }
@@ -219,15 +221,14 @@ class AtTime {
   Mat3X positions(const Mat3X& s) const { return dsns::positions(*surface_, s, t_); }
 
  private:
-  const F* surface_;
+  detail::Held<F> surface_;
   double t_;
 };
 
-template <AnimatedSurface F>
-AtTime<F> at_time(const F& surface, double t) {
-  return {surface, t};
+/// Refers to a surface that has a name, which must outlive the result; keeps a temporary.
+template <class F>
+requires AnimatedSurface<std::remove_cvref_t<F>> AtTime<detail::HeldAs<F>> at_time(F&& surface, double t) {
+  return {std::forward<F>(surface), t};
 }
-template <AnimatedSurface F>
-AtTime<F> at_time(const F&& surface, double t) = delete;
 
 }  // namespace dsns
