@@ -23,15 +23,10 @@ inline PointCurvature level_set_curvature(const Vec3d& gradient, const Mat3& hes
           (square * hessian.trace() - gradient.dot(hessian * gradient)) / (2 * square * std::sqrt(square))};
 }
 
-/// Of r(s) s at the unit vector s, from the value, gradient and Hessian at s of any extension of the radius r > 0 to R^3.
-/// With g and A its derivatives on the sphere, in a tangent frame, and w^2 = r^2 + |g|^2,
+/// Of r(s) s for a radius r > 0 with gradient g and covariant Hessian A on the sphere, in a tangent frame: with
+/// w^2 = r^2 + |g|^2,
 ///   K = det(r A - 2 g g^T - r^2) / (r^2 w^4),   H = (2 + (|g|^2 + g . A g / r) / w^2 - tr A / r) / (2 w).
-inline PointCurvature star_shaped_curvature(const Vec3d& s, double r, const Vec3d& gradient, const Mat3& hessian) {
-  Eigen::Matrix<double, 3, 2> frame;
-  frame.col(0) = s.unitOrthogonal();
-  frame.col(1) = s.cross(frame.col(0));
-  const Eigen::Vector2d g = frame.transpose() * gradient;
-  const Eigen::Matrix2d A = frame.transpose() * hessian * frame - s.dot(gradient) * Eigen::Matrix2d::Identity();
+inline PointCurvature star_shaped_curvature(double r, const Eigen::Vector2d& g, const Eigen::Matrix2d& A) {
   const double square = g.squaredNorm(), w2 = r * r + square;
   const Eigen::Matrix2d bend = r * A - 2 * g * g.transpose() - r * r * Eigen::Matrix2d::Identity();
   return {bend.determinant() / (r * r * w2 * w2),

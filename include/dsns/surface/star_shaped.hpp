@@ -19,9 +19,7 @@ class StarShaped {
   /// coefficients (degree + 1)^2, index l^2 + l + m.
   /// throws   InvalidArgument where their number is not a square, or the radius cannot be proved positive
   explicit StarShaped(Eigen::VectorXd coefficients) : coefficients_(std::move(coefficients)) {
-    degree_ = static_cast<int>(std::lround(std::sqrt(double(coefficients_.size())))) - 1;
-    require(degree_ >= 0 && harmonic_count(degree_) == coefficients_.size(), "StarShaped: ", coefficients_.size(),
-            " coefficients, give the square of a whole number");
+    degree_ = harmonic_degree(coefficients_.size());
     least_radius_ = lower_bound();
     require(least_radius_ > 0, "StarShaped: the radius is proved to be no more than ", least_radius_,
             " from below, it must be positive: give a larger first coefficient");
@@ -46,8 +44,8 @@ class StarShaped {
   double lower_bound() const {
     const int n = 8 * (degree_ + 1);
     const GaussLegendre rule = gauss_legendre(n);
-    double gap =
-        std::acos(rule.nodes[n - 1]);  // from the pole to the first circle of latitude, then half between circles
+    // From the pole to the first circle of latitude, then half between circles.
+    double gap = std::acos(rule.nodes[n - 1]);
     for (int i = 1; i < n; ++i) gap = std::max(gap, (std::acos(rule.nodes[i - 1]) - std::acos(rule.nodes[i])) / 2);
     double slope = 0;
     for (int l = 1; l <= degree_; ++l)
@@ -81,12 +79,10 @@ using BumpySphere = BumpySphereOf<double>;
 namespace detail {
 
 inline PointCurvature radial_curvature(const StarShaped& f, const Vec3d& s) {
-  const HarmonicJets h = harmonic_jets(s, f.degree());
-  const auto times = [&](const Eigen::MatrixXd& m) { return m.row(0).dot(f.coefficients()); };
-  Mat3 hessian;
-  hessian << times(h.dxx), times(h.dxy), times(h.dxz), times(h.dxy), times(h.dyy), times(h.dyz), times(h.dxz),
-      times(h.dyz), times(h.dzz);
-  return star_shaped_curvature(s, times(h.y), Vec3d(times(h.dx), times(h.dy), times(h.dz)), hessian);
+  const FunctionJets<1> r = harmonic_sum_jets<1>(f.coefficients(), charts_at(s));
+  Eigen::Matrix2d hessian;
+  hessian << r.fuu[0], r.fuv[0], r.fuv[0], r.fvv[0];
+  return star_shaped_curvature(r.f[0], {r.fu[0], r.fv[0]}, hessian);
 }
 
 inline PointCurvature radial_curvature(const BumpySphere& f, const Vec3d& s) {
@@ -98,7 +94,12 @@ inline PointCurvature radial_curvature(const BumpySphere& f, const Vec3d& s) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
     hessian(i, j) = hessian(j, i) = f.amplitude * a[k] * b[i] * b[j];
   }
-  return star_shaped_curvature(s, 1 + product, gradient, hessian);
+  const TangentFrame frame = tangent_frame(s);
+  Eigen::Matrix<double, 3, 2> tangents;
+  tangents << frame.e1, frame.e2;
+  return star_shaped_curvature(
+      1 + product, tangents.transpose() * gradient,
+      tangents.transpose() * hessian * tangents - s.dot(gradient) * Eigen::Matrix2d::Identity());
 }
 
 }  // namespace detail
