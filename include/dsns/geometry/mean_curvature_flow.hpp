@@ -31,13 +31,16 @@ struct MeanCurvatureFlowOptions {
   int nodes = 0;                   ///< as in GalerkinOptions
   CurvatureFlow variant = CurvatureFlow::exact;
   FlowArea area = FlowArea::shrinking;
+  /// Radians between the normals of neighbouring nodes, beyond which the surface counts as folded; pi lets all pass.
+  double largest_turn = pi / 2;
   int threads = 1;
 };
 
 /// Before the first step and after each: time, area, volume, and the Dirichlet energy 1/2 integral of |grad x|^2 with the
-/// metric of the start. The energy is at least the area, and equal where the surface is conformal to the start.
+/// metric of the start. The energy is at least the area, and equal where the surface is conformal to the start. The turn is the
+/// largest between normals of neighbouring nodes, in radians: large where the degree is too low for the surface.
 struct MeanCurvatureFlowSummary {
-  std::vector<double> times, areas, volumes, energies;
+  std::vector<double> times, areas, volumes, energies, turns;
 };
 
 struct MeanCurvatureFlow {
@@ -88,6 +91,7 @@ class FlowingSurface {
     summary.times.push_back(time_);
     summary.areas.push_back(area_);
     summary.volumes.push_back(volume_);
+    summary.turns.push_back(turn_);
     summary.energies.push_back((x_.transpose() * stiffness_ * x_).trace() / 2);
   }
 
@@ -115,21 +119,24 @@ class FlowingSurface {
       densities_.push_back(density);
     }
     centroid_ /= area_;
-    check_immersion(normals);
+    turn_ = sharpest_turn(normals);
+    require<DegenerateSurface>(turn_ <= options_.largest_turn, "mean_curvature_flow: at time ", time_,
+                               " normals of neighbouring nodes are ", turn_ * 180 / pi, " degrees apart, more than ",
+                               options_.largest_turn * 180 / pi, ": the surface is folded or the degree of ", degree_,
+                               " too low for it; take a higher one, end earlier, or allow a larger turn");
   }
 
-  /// A density vanishes at single points, between the nodes; but near them the normals turn over.
-  void check_immersion(const Mat3X& normals) const {
+  /// An area density vanishes at single points, between the nodes; but around them the normals turn over.
+  double sharpest_turn(const Mat3X& normals) const {
+    double turn = 0;
     for (int i = 0; i < latitudes_; ++i)
       for (int j = 0; j < sectors_; ++j) {
-        const Index here = Index(i) * sectors_ + j, east = Index(i) * sectors_ + (j + 1) % sectors_;
-        const Index north = std::min(i + 1, latitudes_ - 1) * Index(sectors_) + j;
+        const Index row = Index(i) * sectors_, here = row + j, east = row + (j + 1) % sectors_;
+        const Index north = std::min(here + sectors_, (latitudes_ - 1) * Index(sectors_) + j);
         for (const Index there : {east, north})
-          require<DegenerateSurface>(normals.col(here).dot(normals.col(there)) > 0, "mean_curvature_flow: at time ",
-                                     time_, " the normals of the neighbouring nodes ", here, " and ", there,
-                                     " are more than a right angle apart: the surface is no longer immersed, or the "
-                                     "degree too low for it; end earlier or take CurvatureFlow::conformalized");
+          turn = std::max(turn, angle_between(normals.col(here), normals.col(there)));
       }
+    return turn;
   }
 
   void rescale(double factor) {
@@ -158,7 +165,7 @@ class FlowingSurface {
   std::vector<SurfaceTangents> tangents_;
   std::vector<Eigen::VectorXd> densities_;
   Eigen::MatrixXd stiffness_;  ///< of the start
-  double time_ = 0, area_ = 0, volume_ = 0, first_area_ = 0;
+  double time_ = 0, area_ = 0, volume_ = 0, first_area_ = 0, turn_ = 0;
   Vec3d centroid_ = Vec3d::Zero();
 };
 
@@ -168,8 +175,7 @@ class FlowingSurface {
 /// accuracy first order in the step: a sphere follows sqrt(r^2 - 4 t) [geometry/mean_curvature_flow_test]; in space that of
 ///          the harmonics, which hold the tables of their values and slopes at all nodes, 130 MB at degree 30
 /// throws   InvalidArgument unless the step is positive and the times ascend from 0 on; DegenerateSurface where the surface
-///          shrinks to a point before a step ends, and where it is not immersed: no area at a node, or normals of neighbouring
-///          nodes more than a right angle apart
+///          shrinks to a point before a step ends, has no area at a node, or folds by options.largest_turn
 inline MeanCurvatureFlow mean_curvature_flow(const HarmonicSurface& start, const MeanCurvatureFlowOptions& options) {
   require(options.step > 0, "mean_curvature_flow: step is ", options.step, ", give a positive one");
   require(!options.times.empty() && options.times.front() >= 0 &&
