@@ -39,7 +39,7 @@ TEST_CASE("a sphere shrinks as sqrt(r^2 - 4 t), to the first order of the step, 
     CHECK(flow.summary.energies.back() == Approx(4 * pi * r * r));  // spheres about one point are conformal
   }
   INFO("errors " << errors[0] << ", " << errors[1] << ", " << errors[2]);
-  CHECK(std::abs(errors[2]) < 5e-3);
+  CHECK(std::abs(errors[2]) < 6e-3);
   CHECK(errors[0] / errors[1] == Approx(2).epsilon(0.05));
   CHECK(errors[1] / errors[2] == Approx(2).epsilon(0.025));
 }
@@ -64,7 +64,7 @@ TEST_CASE("the flow starts with the velocity -2 H n, and its area falls at the r
   const Mat3X a = (once.surfaces[0].positions(q.points) - j.f) / step,
               b = (twice.surfaces[0].positions(q.points) - j.f) / (step / 2);
   const Mat3X exact = -2 * unit_normals(j) * c.mean.asDiagonal();
-  CHECK((2 * b - a - exact).colwise().norm().maxCoeff() < 2e-4 * exact.colwise().norm().maxCoeff());
+  CHECK((2 * b - a - exact).colwise().norm().maxCoeff() < 5e-4 * exact.colwise().norm().maxCoeff());
 }
 
 TEST_CASE("a convex body becomes round as it shrinks, and neither area nor Dirichlet bound is broken", "[geometry]") {
