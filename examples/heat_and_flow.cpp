@@ -55,8 +55,8 @@ class Row {
   double end_ = 0;
 };
 
-/// From black over red and yellow to white, for x in [0, 1].
-Vec3d glow(double x) { return Vec3d(3 * x, 3 * x - 1, 3 * x - 2).cwiseMax(0.03).cwiseMin(1); }
+/// From night over red and yellow to white, for x in [0, 1].
+Vec3d glow(double x) { return Vec3d(3 * x, 3 * x - 1, 3 * x - 2).cwiseMax(Vec3d(0.03, 0.035, 0.06)).cwiseMin(1); }
 /// Blue, white and red, for x in [-1, 1]: linear RGB.
 Vec3d signs(double x) {
   const double a = std::min(1.0, std::abs(x));
@@ -81,9 +81,10 @@ Mat3X stripes(const Mat3X& s) {
   return colors;
 }
 
-MeshSequence sequence(const std::vector<HarmonicSurface>& surfaces, const TriangleMesh& sphere, const char* name) {
+MeshSequence sequence(const std::vector<HarmonicSurface>& surfaces, const TriangleMesh& sphere, double scale,
+                      const char* name) {
   MeshSequence moving;
-  for (const auto& f : surfaces) moving.frames.push_back(f.positions(sphere.vertices));
+  for (const auto& f : surfaces) moving.frames.push_back(scale * f.positions(sphere.vertices));
   moving.faces = sphere.faces;
   moving.duration = 4;
   moving.name = name;
@@ -109,7 +110,7 @@ int main(int argc, char** argv) try {
 
   const Vec3d source = Vec3d(-0.75, 0.4, 0.53).normalized();
   std::cout << "\nheat of a unit at one point, there and at the far tip:";
-  for (const double t : {0.3, 1.5, 6.0}) {
+  for (const double t : {0.6, 3.0, 15.0}) {
     const Mat3X far = Vec3d::UnitX();
     std::cout << "  t = " << t << ": " << heat_kernel(spectrum, source, source, t)(0, 0) << " and "
               << heat_kernel(spectrum, far, source, t)(0, 0);
@@ -117,7 +118,7 @@ int main(int argc, char** argv) try {
 
   const LimbedBody limbed = made_limbs();
   const HarmonicSurface body = project_on_harmonics(at_time(limbed, 0), pictures ? 24 : 10);
-  const MeanCurvatureFlow round = mean_curvature_flow(body, {.times = equal_times(1.2, 25),
+  const MeanCurvatureFlow round = mean_curvature_flow(body, {.times = equal_times(2, 9),
                                                              .step = 0.05,
                                                              .variant = CurvatureFlow::conformalized,
                                                              .area = FlowArea::kept,
@@ -146,13 +147,13 @@ int main(int argc, char** argv) try {
 
     const HarmonicSurface start = project_on_harmonics(ellipsoid, 20);
     const MeanCurvatureFlow shrinking =
-        mean_curvature_flow(start, {.times = equal_times(0.72, 25), .step = 0.01, .largest_turn = pi});
+        mean_curvature_flow(start, {.times = equal_times(0.72, 9), .step = 0.01, .largest_turn = pi});
     for (std::size_t k = 0; k < shrinking.summary.times.size(); k += 12)
       std::cout << "t = " << shrinking.summary.times[k] << ": area " << shrinking.summary.areas[k] << '\n';
     options.vertex_colors.assign(2, stripes(sphere.vertices));
     write_gltf(argv[2],
-               {sequence(shrinking.surfaces, sphere, "mean-curvature flow"),
-                sequence(round.surfaces, sphere, "conformalised flow, area kept")},
+               {sequence(shrinking.surfaces, sphere, 1, "mean-curvature flow"),
+                sequence(round.surfaces, sphere, 2.2, "conformalised flow, area kept")},
                options);
   }
   return after > 0.95 ? 0 : 1;

@@ -91,7 +91,7 @@ Eigen::VectorXd estimated_errors(const S& surface, const SphereQuadrature& q, co
 }  // namespace detail
 
 /// Eigenvalues and eigenfunctions of a surface; a dense problem in (degree + 1)^2 unknowns, of cubic cost.
-/// accuracy lambda_k to 1e-10 of a round sphere; 1e-9 for the 20 lowest of a spheroid 1:1:1.7 at degree 20
+/// accuracy 1e-12 of lambda_k on a sphere; 1e-9 of the 25 lowest of a spheroid 1:1:1.7 at degree 18
 ///          [geometry/spectrum_test: sphere, Sturm-Liouville]; of other surfaces as summary.estimated_errors says
 /// throws   InvalidArgument as galerkin_nodes and for a negative count, DegenerateSurface where the surface is not immersed at
 ///          a node or its area density varies beyond the digits of the mass matrix
