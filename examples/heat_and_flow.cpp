@@ -1,5 +1,6 @@
-// Eigenfunctions, heat and mean-curvature flow of surfaces that are functions, without a mesh: the tones of an ellipsoid, heat
-// that spreads from its tip, a body that becomes a sphere.  heat_and_flow [HEAT.glb FLOW.glb]; without files, figures only.
+// Eigenfunctions, heat and mean-curvature flow of surfaces that are functions, without a mesh: the tones of an
+// ellipsoid, heat that spreads from its tip, a body that becomes a sphere.  heat_and_flow [HEAT.glb FLOW.glb]; without
+// files, figures only.
 #include <dsns/geometry/mean_curvature_flow.hpp>
 #include <dsns/geometry/spectrum.hpp>
 #include <dsns/io/gltf_writer.hpp>

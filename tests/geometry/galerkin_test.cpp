@@ -40,7 +40,8 @@ TEST_CASE("mass and stiffness of an ellipsoid's coordinates are integrals known 
   const double y0 = std::sqrt(1 / (4 * pi)), y1 = std::sqrt(3 / (4 * pi));
   CHECK(system.mass(0, 0) == Approx(y0 * y0 * m.area).epsilon(1e-12));
   CHECK(system.stiffness.col(0).norm() < 1e-14);
-  // Half the Dirichlet energy of the position is the area: x = a x^, and x^ = Y_11 / y1, y^ = Y_1-1 / y1, z^ = Y_10 / y1.
+  // Half the Dirichlet energy of the position is the area: x = a x^, and x^ = Y_11 / y1, y^ = Y_1-1 / y1, z^ = Y_10 /
+  // y1.
   const double energy =
       e.a * e.a * system.stiffness(3, 3) + e.b * e.b * system.stiffness(1, 1) + e.c * e.c * system.stiffness(2, 2);
   CHECK(energy / (2 * y1 * y1) == Approx(m.area).epsilon(1e-12));

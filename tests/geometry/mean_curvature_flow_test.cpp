@@ -100,6 +100,16 @@ TEST_CASE("the conformalised flow makes a limbed body a sphere of its area, conf
   CHECK(measure(flow.surfaces[1], sphere_quadrature(30)).total_curvature == Approx(4 * pi).epsilon(1e-3));
 }
 
+TEST_CASE("a body whose area is kept stays where it is", "[geometry]") {
+  Eigen::MatrixX3d c = ellipsoid(1, 1.1, 1.3, 5).coefficients();
+  const Vec3d centre(4, -2, 1);
+  c.row(0) += std::sqrt(4 * pi) * centre.transpose();
+  const MeanCurvatureFlow flow =
+      mean_curvature_flow(HarmonicSurface(c), {.times = {0.1}, .step = 0.02, .area = FlowArea::kept});
+  CHECK((measure(flow.surfaces[0], sphere_quadrature(20)).area_centroid - centre).norm() < 1e-12);
+  CHECK(flow.summary.areas[5] == Approx(flow.summary.areas[0]).epsilon(1e-12));
+}
+
 TEST_CASE("the flow does not depend on threads, and refuses steps past the end, folds and wrong options",
           "[geometry]") {
   const HarmonicSurface body = ellipsoid(1, 1.1, 1.3, 6);

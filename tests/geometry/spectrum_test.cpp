@@ -35,7 +35,8 @@ Eigen::VectorXd sphere_eigenvalues(int degree) {
   return l * (l + 1);
 }
 
-/// The lowest eigenvalues of linear finite elements on a triangle mesh: cotangents, consistent mass, subspace iteration.
+/// The lowest eigenvalues of linear finite elements on a triangle mesh: cotangents, consistent mass, subspace
+/// iteration.
 Eigen::VectorXd finite_element_eigenvalues(const TriangleMesh& mesh, Index count) {
   using Sparse = Eigen::SparseMatrix<double>;
   const Index n = mesh.vertices.cols(), block = count + 8;
@@ -68,8 +69,8 @@ Eigen::VectorXd finite_element_eigenvalues(const TriangleMesh& mesh, Index count
   return values;
 }
 
-/// Eigenvalues of mode m (cos and sin of m times the longitude) of the spheroid (a, a, c), ascending: with h^2 = a^2 z^2 +
-/// c^2 (1 - z^2) they solve -((1 - z^2) a/h u')' + m^2 h / (a (1 - z^2)) u = lambda a h u on [-1, 1]. For
+/// Eigenvalues of mode m (cos and sin of m times the longitude) of the spheroid (a, a, c), ascending: with h^2 = a^2
+/// z^2 + c^2 (1 - z^2) they solve -((1 - z^2) a/h u')' + m^2 h / (a (1 - z^2)) u = lambda a h u on [-1, 1]. For
 /// u = (1 - z^2)^(m/2) v and g = (1 - z^2) v' - m z v this is regular,
 ///   -((a/h)' g + (a/h)(g' - m z v') - m^2 c^2 / (a h) v) = lambda a h v,
 /// and v is collocated at Chebyshev's nodes.
@@ -177,8 +178,8 @@ TEST_CASE("eigenfunctions are orthonormal on the surface and satisfy the equatio
   const Eigen::MatrixXd phi = spectrum.values(q.points);
   const Eigen::MatrixXd gram = phi.transpose() * dA.asDiagonal() * phi;
   CHECK((gram - Eigen::MatrixXd::Identity(12, 12)).cwiseAbs().maxCoeff() < 1e-12);
-  // On a level set of a quadratic function, Laplacian(u) = trace of the Hessian in the tangent plane - 2 H du/dn, here of
-  // u = phi(A^-1 X / |A^-1 X|) in space, by second differences.
+  // On a level set of a quadratic function, Laplacian(u) = trace of the Hessian in the tangent plane - 2 H du/dn, here
+  // of u = phi(A^-1 X / |A^-1 X|) in space, by second differences.
   for (const Index k : {1, 4, 11}) {
     const HarmonicFunction f = spectrum.eigenfunction(k);
     const Vec3d axes(e.a, e.b, e.c), s = Vec3d(1, -2, 0.5).normalized(), X = axes.cwiseProduct(s);

@@ -103,7 +103,8 @@ class GramSum {
  public:
   explicit GramSum(Index size) : sum_(Eigen::MatrixXd::Zero(size, size)) {}
 
-  /// Threads share the columns of the sum, not the rows of R: each entry is added up in one order whatever their number.
+  /// Threads share the columns of the sum, not the rows of R: each entry is added up in one order whatever their
+  /// number.
   void add(const Eigen::MatrixXd& rows, int threads) {
     constexpr Index width = 64;
     const Index size = sum_.cols();
@@ -123,7 +124,8 @@ class GramSum {
 inline Eigen::MatrixXd mass_rows(const GalerkinTile& tile, const Eigen::VectorXd& density) {
   return tile.weights.cwiseProduct(density).cwiseSqrt().asDiagonal() * tile.y;
 }
-/// K = C C^T with C = (sqrt(G/|n|), 0; -F/sqrt(G|n|), sqrt(|n|/G)), where EG - F^2 = |n|^2 leaves no difference to cancel.
+/// K = C C^T with C = (sqrt(G/|n|), 0; -F/sqrt(G|n|), sqrt(|n|/G)), where EG - F^2 = |n|^2 leaves no difference to
+/// cancel.
 inline Eigen::MatrixXd stiffness_rows(const GalerkinTile& tile, const SurfaceTangents& t,
                                       const Eigen::VectorXd& density) {
   const Index n = tile.weights.size();
@@ -139,8 +141,8 @@ inline Eigen::MatrixXd stiffness_rows(const GalerkinTile& tile, const SurfaceTan
 }  // namespace detail
 
 /// Mass and stiffness of a surface in the harmonics up to a degree. On the unit sphere M = 1 and S = diag(l (l + 1)).
-/// accuracy that of the quadrature: exact for the harmonics' products with a density of degree 2 nodes - 1 - 2 degree; on the
-///          sphere 1e-12 [geometry/galerkin_test]
+/// accuracy that of the quadrature: exact for the harmonics' products with a density of degree 2 nodes - 1 - 2 degree;
+///          on the sphere 1e-12 [geometry/galerkin_test]
 /// throws   InvalidArgument as galerkin_nodes, DegenerateSurface where the surface is not immersed at a node
 template <Surface S>
 GalerkinSystem galerkin_system(const S& surface, const GalerkinOptions& options) {

@@ -1,10 +1,11 @@
 #pragma once
-/// Mean-curvature flow of a surface as a function, without a mesh: dx/dt = Laplacian(x) = -2 H n with the outward normal n and
-/// H = 1/r on a sphere of radius r, which so shrinks as sqrt(r^2 - 4 t).
+/// Mean-curvature flow of a surface as a function, without a mesh: dx/dt = Laplacian(x) = -2 H n with the outward
+/// normal n and H = 1/r on a sphere of radius r, which so shrinks as sqrt(r^2 - 4 t).
 ///
-/// The position is a sum of harmonics; a step solves (M_k + dt S_k) x_(k+1) = M_k x_k with mass and stiffness of the surface
-/// as it is, implicit in x alone. Flowing by its own metric a thin part pinches off in finite time. The conformalised flow
-/// keeps the stiffness of the start: it stays smooth where the other tears, and makes every surface of genus 0 round.
+/// The position is a sum of harmonics; a step solves (M_k + dt S_k) x_(k+1) = M_k x_k with mass and stiffness of the
+/// surface as it is, implicit in x alone. Flowing by its own metric a thin part pinches off in finite time. The
+/// conformalised flow keeps the stiffness of the start: it stays smooth where the other tears, and makes every surface
+/// of genus 0 round.
 #include <dsns/geometry/galerkin.hpp>
 #include <dsns/surface/harmonic.hpp>
 
@@ -36,9 +37,10 @@ struct MeanCurvatureFlowOptions {
   int threads = 1;
 };
 
-/// Before the first step and after each: time, area, volume, and the Dirichlet energy 1/2 integral of |grad x|^2 with the
-/// metric of the start. The energy is at least the area, and equal where the surface is conformal to the start. The turn is the
-/// largest between normals of neighbouring nodes, in radians: large where the degree is too low for the surface.
+/// Before the first step and after each: time, area, volume, and the Dirichlet energy 1/2 integral of |grad x|^2 with
+/// the metric of the start. The energy is at least the area, and equal where the surface is conformal to the start. The
+/// turn is the largest between normals of neighbouring nodes, in radians: large where the degree is too low for the
+/// surface.
 struct MeanCurvatureFlowSummary {
   std::vector<double> times, areas, volumes, energies, turns;
 };
@@ -172,10 +174,10 @@ class FlowingSurface {
 }  // namespace detail
 
 /// The surface at the wanted times, and its measures after each step.
-/// accuracy first order in the step: a sphere follows sqrt(r^2 - 4 t) [geometry/mean_curvature_flow_test]; in space that of
-///          the harmonics, which hold the tables of their values and slopes at all nodes, 130 MB at degree 30
-/// throws   InvalidArgument unless the step is positive and the times ascend from 0 on; DegenerateSurface where the surface
-///          shrinks to a point before a step ends, has no area at a node, or folds by options.largest_turn
+/// accuracy first order in the step: a sphere follows sqrt(r^2 - 4 t) [geometry/mean_curvature_flow_test]; in space
+///          that of the harmonics, which hold the tables of their values and slopes at all nodes, 150 MB at degree 30
+/// throws   InvalidArgument unless the step is positive and the times ascend from 0 on; DegenerateSurface where the
+///          surface shrinks to a point before a step ends, has no area at a node, or folds by options.largest_turn
 inline MeanCurvatureFlow mean_curvature_flow(const HarmonicSurface& start, const MeanCurvatureFlowOptions& options) {
   require(options.step > 0, "mean_curvature_flow: step is ", options.step, ", give a positive one");
   require(!options.times.empty() && options.times.front() >= 0 &&

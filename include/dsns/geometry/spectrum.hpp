@@ -5,8 +5,8 @@
 ///   spectrum.eigenvalues;                                     // 0 first, ascending
 ///   const auto u = dsns::heat_flow(spectrum, initial, 0.1);   // a function of s, as `initial` is
 ///
-/// Rayleigh-Ritz in the harmonics: for analytic surfaces the errors fall exponentially with the degree, first of the low
-/// eigenvalues; of (degree + 1)^2 values the upper half means little, and `trusted_count` says how far to go.
+/// Rayleigh-Ritz in the harmonics: for analytic surfaces the errors fall exponentially with the degree, first of the
+/// low eigenvalues; of (degree + 1)^2 values the upper half means little, and `trusted_count` says how far to go.
 #include <dsns/geometry/galerkin.hpp>
 
 #include <Eigen/Cholesky>
@@ -26,12 +26,13 @@ struct SpectrumSummary {
   double area = 0;
   double mass_condition = 0;  ///< of M in the 1-norm, estimated: some times the ratio of extreme area densities
   double residual = 0;        ///< largest entry of S c - lambda M c, divided by that of S c
-  /// By eigenvalue, how far the same computation with three quarters of degree and nodes is off this one. It errs on the
-  /// safe side where the errors fall with the degree; infinite where the smaller space has no such eigenvalue.
+  /// By eigenvalue, how far the same computation with three quarters of degree and nodes is off this one. It errs on
+  /// the safe side where the errors fall with the degree; infinite where the smaller space has no such eigenvalue.
   Eigen::VectorXd estimated_errors;
 };
 
-/// -Laplacian(phi_k) = lambda_k phi_k, integral of phi_j phi_k dA = delta_jk; the largest coefficient of each is positive.
+/// -Laplacian(phi_k) = lambda_k phi_k, integral of phi_j phi_k dA = delta_jk; the largest coefficient of each is
+/// positive.
 struct LaplaceBeltramiSpectrum {
   int degree = 0;
   Eigen::VectorXd eigenvalues;   ///< ascending, length^-2; the first is 0
@@ -93,8 +94,8 @@ Eigen::VectorXd estimated_errors(const S& surface, const SphereQuadrature& q, co
 /// Eigenvalues and eigenfunctions of a surface; a dense problem in (degree + 1)^2 unknowns, of cubic cost.
 /// accuracy 1e-12 of lambda_k on a sphere; 1e-9 of the 25 lowest of a spheroid 1:1:1.7 at degree 18
 ///          [geometry/spectrum_test: sphere, Sturm-Liouville]; of other surfaces as summary.estimated_errors says
-/// throws   InvalidArgument as galerkin_nodes and for a negative count, DegenerateSurface where the surface is not immersed at
-///          a node or its area density varies beyond the digits of the mass matrix
+/// throws   InvalidArgument as galerkin_nodes and for a negative count, DegenerateSurface where the surface is not
+///          immersed at a node or its area density varies beyond the digits of the mass matrix
 template <Surface S>
 LaplaceBeltramiSpectrum laplace_beltrami_spectrum(const S& surface, const SpectrumOptions& options = {}) {
   require(options.count >= 0, "laplace_beltrami_spectrum: count is ", options.count, ", give 0 for all");
@@ -157,8 +158,8 @@ HarmonicFunction heat_flow(const LaplaceBeltramiSpectrum& spectrum, const F& ini
 
 /// k_t(x, y) = sum_k exp(-lambda_k t) phi_k(x) phi_k(y): heat at x a time t after a unit of it was put at y, by area.
 /// x, y     3 x n and 3 x m, unit; returns n x m
-/// accuracy what is left out is of the order exp(-lambda t) / (4 pi t) with lambda the last eigenvalue: short times need a
-///          high degree, and too short a time shows waves below zero
+/// accuracy what is left out is of the order exp(-lambda t) / (4 pi t) with lambda the last eigenvalue: short times
+///          need a high degree, and too short a time shows waves below zero
 inline Eigen::MatrixXd heat_kernel(const LaplaceBeltramiSpectrum& spectrum, const Mat3X& x, const Mat3X& y,
                                    double time) {
   return spectrum.values(x) * heat_decay(spectrum, time).asDiagonal() * spectrum.values(y).transpose();
