@@ -3,6 +3,8 @@
 #include <dsns/elastic/geodesic.hpp>
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/geometry/integrals.hpp>
+#include <dsns/geometry/mean_curvature_flow.hpp>
+#include <dsns/geometry/spectrum.hpp>
 #include <dsns/io/frames.hpp>
 #include <dsns/mesh/area_ratios.hpp>
 #include <dsns/mesh/join_pieces.hpp>
