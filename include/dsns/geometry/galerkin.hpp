@@ -74,14 +74,13 @@ inline GalerkinTile galerkin_tile(const SphereQuadrature& q, int tile, int degre
                    Eigen::MatrixXd(n, count), Eigen::MatrixXd(n, count)};
   parallel_for(static_cast<int>((n + piece - 1) / piece), threads, [&](int p) {
     const Index begin = p * piece, size = std::min(piece, n - begin);
-    const HarmonicJets h = harmonic_jets(out.charts.s.middleCols(begin, size), degree);
-    const auto along = [&](const Mat3X& e) -> Eigen::MatrixXd {
-      const auto part = e.middleCols(begin, size).transpose();
-      return part.col(0).asDiagonal() * h.dx + part.col(1).asDiagonal() * h.dy + part.col(2).asDiagonal() * h.dz;
-    };
+    const HarmonicTangents h =
+        harmonic_tangents({out.charts.s.middleCols(begin, size), out.charts.e1.middleCols(begin, size),
+                           out.charts.e2.middleCols(begin, size)},
+                          degree);
     out.y.middleRows(begin, size) = h.y;
-    out.yu.middleRows(begin, size) = along(out.charts.e1);
-    out.yv.middleRows(begin, size) = along(out.charts.e2);
+    out.yu.middleRows(begin, size) = h.yu;
+    out.yv.middleRows(begin, size) = h.yv;
   });
   return out;
 }
