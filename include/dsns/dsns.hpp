@@ -2,7 +2,10 @@
 /// Everything that needs Eigen alone. glTF is apart: <dsns/io/gltf.hpp> needs tinygltf.
 #include <dsns/elastic/geodesic.hpp>
 #include <dsns/elastic/normalization.hpp>
+#include <dsns/geometry/geodesic_distance.hpp>
 #include <dsns/geometry/integrals.hpp>
+#include <dsns/geometry/motion.hpp>
+#include <dsns/geometry/operators.hpp>
 #include <dsns/io/frames.hpp>
 #include <dsns/mesh/area_ratios.hpp>
 #include <dsns/mesh/join_pieces.hpp>
