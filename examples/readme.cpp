@@ -1,5 +1,7 @@
 // The README's ten lines: the curvature of a moving formula, and of a network that learnt it.
-#include <dsns/dsns.hpp>
+#include <dsns/geometry/curvature.hpp>
+#include <dsns/nn/fit.hpp>
+#include <dsns/sphere/quadrature.hpp>
 #include <iostream>
 
 int main() {
