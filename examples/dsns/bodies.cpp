@@ -188,7 +188,7 @@ MeshSequence denormalize(const std::vector<Mat3X>& frames, const Faces& faces, c
 }
 
 Mat3X relative_trajectory(const NormalizedSequence& body, const TimeWarp& warp, int frames) {
-  const UniformSpline spline(body.trajectory.cols());
+  const CubicSpline spline(body.trajectory.cols());
   Mat3X out(3, frames);
   for (int k = 0; k < frames; ++k) {
     const Vec3d place = body.trajectory * spline.weights(warp(double(k) / (frames - 1)));

@@ -27,7 +27,7 @@ class TemporalModes {
 
  private:
   Eigen::MatrixXd values_;
-  UniformSpline spline_;
+  CubicSpline spline_;
 };
 
 /// The parts of a separable surface, each of 3 M functions on the sphere: x, y and z of the first mode, of the second, ...
