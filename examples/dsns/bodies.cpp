@@ -9,18 +9,16 @@
 #include <dsns/io/npy.hpp>
 #include <dsns/io/source_name.hpp>
 #include <dsns/mesh/join_pieces.hpp>
-#include <dsns/mesh/sampling.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
-#include <dsns/nn/fit.hpp>
 #include <dsns/surface/sampled.hpp>
-#include <dsns/surface/surface_error.hpp>
 
 namespace dsns::program {
 
 namespace {
 
-/// At most so many equidistant frames.
+/// At most so many equidistant frames, if positive.
 void thin_out(Source& source, int frames) {
+  if (frames == 0) return;
   std::vector<Mat3X>& all = source.sequence.frames;
   const auto found = all.size(), wanted = static_cast<std::size_t>(frames);
   if (found <= wanted) return;
@@ -79,7 +77,7 @@ Source read_source(const std::string& name, const Settings& settings, Still stil
     GltfReadOptions options;
     options.clip = parsed.clip;
     options.frames = settings.frames;
-    options.rate = settings.rate;
+    options.rate = settings.rate > 0 || settings.frames > 0 ? settings.rate : 60;
     options.node = settings.node;
     options.allow_still = still == Still::allowed;
     GltfAnimation animation = read_gltf(parsed.file, options);
@@ -132,44 +130,6 @@ void write_on_own_mesh(const std::filesystem::path& out, const Body& body, const
     write_obj_frames(out, result.name, frames, own_frames.front());
 }
 
-FitFigures fit_body(Body& body, const Settings& settings, const Progress& progress) {
-  const MeshSequence& sequence = body.normalized.sequence;
-  const Mat3X& sphere = body.sphere.vertices;
-  const SampledSurface reference(sequence, sphere);
-  FitOptions options;
-  options.seed = settings.seed;
-  options.threads = settings.threads;
-  options.seconds = settings.seconds;
-  if (settings.steps > 0) options.steps = settings.steps;
-  // Half by area of the surface, half by area of the sphere: limbs are small on the sphere, trunks large.
-  options.sampler = [&](int n, std::mt19937_64& random) {
-    Mat3X s(3, n);
-    s.leftCols(n / 2) = sample_faces(sequence, sphere, n / 2, random);
-    MeshSequence round = sequence;
-    round.frames = {sphere};
-    s.rightCols(n - n / 2) = sample_faces(round, sphere, n - n / 2, random);
-    return s;
-  };
-  const FitResult fit = fit_neural_surface(reference, options, progress);
-
-  double radius = 0;
-  std::vector<double> times;
-  for (int k = 0; k < sequence.frame_count(); ++k) {
-    radius = std::max(radius, sequence.frames[std::size_t(k)].colwise().norm().maxCoeff());
-    times.push_back(double(k) / std::max(1, sequence.frame_count() - 1));
-  }
-  std::mt19937_64 held_out(~settings.seed);
-  const SurfaceError e = compare(fit.surface, reference, sample_faces(sequence, sphere, 4000, held_out), times, radius);
-  body.surface = AnyAnimatedSurface(fit.surface);
-  return {e.msd,
-          e.rms_distance,
-          e.max_distance,
-          e.normal_angle_mean_deg,
-          fit.summary.parameters,
-          fit.summary.steps,
-          fit.summary.cpu_seconds};
-}
-
 std::vector<Mat3X> frames_of(const AnyAnimatedSurface& surface, const Mat3X& sphere, int frames) {
   std::vector<Mat3X> out;
   for (int k = 0; k < frames; ++k) out.push_back(surface.positions(sphere, double(k) / (frames - 1)));
@@ -188,7 +148,7 @@ MeshSequence denormalize(const std::vector<Mat3X>& frames, const Faces& faces, c
 }
 
 Mat3X relative_trajectory(const NormalizedSequence& body, const TimeWarp& warp, int frames) {
-  const UniformSpline spline(body.trajectory.cols());
+  const CubicSpline spline(body.trajectory.cols());
   Mat3X out(3, frames);
   for (int k = 0; k < frames; ++k) {
     const Vec3d place = body.trajectory * spline.weights(warp(double(k) / (frames - 1)));

@@ -18,10 +18,11 @@
 namespace dsns::program {
 
 enum class Representation { sampled, neural };
+enum class Preset { fast, general, paper };  ///< of a fit, see fits.hpp
 
 /// What all subcommands share.
 struct Settings {
-  int frames = 32;
+  int frames = 32;    ///< 0: a clip at 60 frames a second, frame files as they are
   double rate = 0;    ///< frames a second; 0: as many as `frames` of a clip, 24 of frame files
   std::string node;   ///< of a glTF file; empty: the whole scene
   std::string faces;  ///< mesh with the faces of NumPy arrays
@@ -32,8 +33,10 @@ struct Settings {
   std::string json;
   Representation representation = Representation::sampled;
   RotationSearch search = RotationSearch::upright;
-  int steps = 0;       ///< of the fit; 0: the library's default
-  double seconds = 0;  ///< of the fit; 0: no limit
+  Preset preset = Preset::general;
+  int steps = 0;          ///< of the fit; 0: the preset's
+  double seconds = 0;     ///< of the fit; 0: no limit
+  double target_msd = 0;  ///< ends the fit; 0: none
 };
 
 /// A file's animation before anything is done to it.
@@ -62,20 +65,8 @@ struct Body {
   Faces own_faces;
 };
 
-/// How a network does on points of the faces that it never saw. Lengths in units of the smallest ball around the origin
-/// that holds all centred frames.
-struct FitFigures {
-  double msd = 0, rms_distance = 0, max_distance = 0, normal_angle_mean_deg = 0;
-  Index parameters = 0;
-  int steps = 0;
-  double cpu_seconds = 0;
-};
-
 /// Reads, repairs and maps; the surface is the sampled mesh. Says in the report what was done.
 Body load_body(const std::string& name, const Settings& settings, Report& report, const Progress& progress);
-
-/// The body with a network for a surface instead of its samples.
-FitFigures fit_body(Body& body, const Settings& settings, const Progress& progress);
 
 /// Writes a sequence on the body's triangles as one on the mesh of its file: a GLB with its materials, a .npy, or a folder of
 /// OBJ frames.

@@ -21,6 +21,16 @@ void geodesic(const Body& first, const Body& second, const std::filesystem::path
               const Settings& settings, Report& report);
 void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, const std::filesystem::path& overview,
           const std::filesystem::path& own, const Settings& settings, Report& report);
+struct RepresentationEvaluation {
+  int frames_trained = 30;    ///< of a second fit, tested on the other frames; 0: none
+  std::filesystem::path out;  ///< folder for heat maps of the errors, or empty; likewise below
+  std::filesystem::path csv, markdown;
+};
+/// Fits every sequence named, or in the folders named, and compares it with its mesh. What cannot be used is said on stderr
+/// and does not stop the rest.
+/// returns  how many could not be used
+int evaluate_representation(const std::vector<std::string>& sources, const Settings& settings,
+                            const RepresentationEvaluation& evaluation, Report& report);
 /// The whole chain into a folder. With no sources, makes three bodies first.
 void demo(std::vector<std::string> sources, const std::filesystem::path& folder, const Settings& settings,
           Report& report);

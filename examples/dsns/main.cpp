@@ -1,5 +1,6 @@
 // dsns: elastic analysis of moving surfaces from the command line.
 #include "commands.hpp"
+#include "fits.hpp"
 
 #include <dsns/core/errors.hpp>
 #include <dsns/io/frames.hpp>
@@ -38,13 +39,6 @@ void add_common(CLI::App* command, Settings& settings) {
   command->add_option("--json", settings.json, "write every figure to this file");
 }
 
-void add_fit(CLI::App* command, Settings& settings) {
-  command->add_option("--steps", settings.steps, "training steps of a network (0: 12000)")
-      ->check(CLI::Range(0, 10000000));
-  command->add_option("--seconds", settings.seconds, "stop training after so many seconds (0: never)")
-      ->check(CLI::Range(0.0, 1e6));
-}
-
 /// An option that takes one of a few words.
 template <class E>
 void add_choice(CLI::App* command, const std::string& name, E& value, const std::map<std::string, E>& words,
@@ -59,6 +53,35 @@ void add_choice(CLI::App* command, const std::string& name, E& value, const std:
             return words.count(word) ? "" : "'" + word + "' is not a choice: give " + list;
           },
           list));
+}
+
+void add_fit(CLI::App* command, Settings& settings) {
+  add_choice(
+      command, "--preset", settings.preset,
+      {{"fast", Preset::fast}, {"general", Preset::general}, {"paper", Preset::paper}},
+      "fast: temporal modes, harmonics, a network on the rest; general: one network of point and time; paper: that of "
+      "the D-SNS paper, which takes weeks");
+  command->add_option("--steps", settings.steps, "training steps of a network (0: the preset's)")
+      ->check(CLI::Range(0, 10000000));
+  command->add_option("--seconds", settings.seconds, "wall time of a fit, at most (0: no limit)")
+      ->check(CLI::Range(0.0, 1e6));
+  command
+      ->add_option("--target-msd", settings.target_msd, "end a fit at this error of points not trained on (0: never)")
+      ->check(CLI::Range(0.0, 1.0));
+}
+
+/// Commands about a fit see every frame and take the fast preset unless told otherwise.
+void about_fits(CLI::App* command, Settings& settings) {
+  add_fit(command, settings);
+  command->preparse_callback([&](std::size_t) {
+    settings.frames = 0;
+    settings.preset = Preset::fast;
+  });
+  command->get_option("--preset")->default_str("fast");
+  command->get_option("--frames")
+      ->description("equidistant frames read from a clip, instead of --rate (or all, of frame files)")
+      ->default_str("");
+  command->get_option("--rate")->description("frames a second: of a clip (60); of frame files (24)");
 }
 
 void add_registration(CLI::App* command, Settings& settings) {
@@ -89,14 +112,21 @@ std::vector<Body> load(const std::vector<std::string>& sources, const Settings& 
 std::string misspelt(const CLI::App& app, int argc, char** argv) {
   const auto is_option = [](const std::string& word) { return word.size() > 1 && word[0] == '-'; };
   if (argc < 2 || is_option(argv[1])) return "";
-  const CLI::App* command = nullptr;
-  std::string names;
-  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (sub->get_name() == argv[1]) command = sub;
-    names += " " + sub->get_name();
+  const CLI::App* command = &app;
+  int first = 1;
+  for (;; ++first) {  // a command may have commands
+    const auto subcommands = command->get_subcommands([](const CLI::App*) { return true; });
+    if (subcommands.empty() || first >= argc || is_option(argv[first])) break;
+    const CLI::App* chosen = nullptr;
+    std::string names;
+    for (const CLI::App* sub : subcommands) {
+      if (sub->get_name() == argv[first]) chosen = sub;
+      names += " " + sub->get_name();
+    }
+    if (chosen == nullptr) return dsns::message("there is no command '", argv[first], "': choose one of", names);
+    command = chosen;
   }
-  if (command == nullptr) return dsns::message("there is no command '", argv[1], "': choose one of", names);
-  for (int i = 2; i < argc; ++i) {
+  for (int i = first; i < argc; ++i) {
     const std::string word = argv[i], name = word.substr(0, word.find('='));
     if (word.rfind("--", 0) == 0 && word.size() > 2 && command->get_option_no_throw(name) == nullptr)
       return dsns::message("there is no option ", name, " of '", argv[1], "': see dsns ", argv[1], " --help");
@@ -134,7 +164,8 @@ int main(int argc, char** argv) {
   Report report;
   std::vector<std::string> sources;
   std::string out, overview, own;
-  int steps = 5;
+  int steps = 5, unusable = 0;
+  RepresentationEvaluation evaluation;
 
   CLI::App app{"Elastic analysis of moving surfaces: registered sequences, geodesics and means of animations."};
   app.set_version_flag("--version", dsns::version);
@@ -144,11 +175,11 @@ int main(int argc, char** argv) {
       "a folder of OBJ, OFF or PLY frames, or of .npz frames, or a .npy array (these two with --faces),\n"
       "FILE.hdf5#SEQUENCE of DFAUST, or a .mat file (-v7.3) of grids Surface{t}.Mall.\n"
       "Try: dsns demo -o demo");
-  const auto command = [&](const std::string& name, const std::string& what, auto run) {
-    CLI::App* sub = app.add_subcommand(name, what);
+  const auto command_of = [&](CLI::App* parent, const std::string& name, const std::string& what, auto run) {
+    CLI::App* sub = parent->add_subcommand(name, what);
     sub->callback([&, run, name] {
       check_output(settings.json, "");
-      if (name != "demo") check_output(out, ".glb");
+      if (name != "demo" && name != "representation") check_output(out, ".glb");
       check_output(overview, ".glb");
       check_own_mesh(own, sources.empty() ? "" : sources.front());
       run();
@@ -156,6 +187,9 @@ int main(int argc, char** argv) {
     });
     add_common(sub, settings);
     return sub;
+  };
+  const auto command = [&](const std::string& name, const std::string& what, auto run) {
+    return command_of(&app, name, what, run);
   };
 
   const auto add_own_mesh = [&](CLI::App* sub) {
@@ -173,14 +207,39 @@ int main(int argc, char** argv) {
   map_command->add_option("FILE", sources, "the animation")->required()->expected(1);
   map_command->add_option("-o,--output", out, "write it and its sphere, in the same colours, to this GLB");
 
-  CLI::App* fit_command = command("fit", "fit a neural surface to an animation", [&] {
+  CLI::App* fit_command = command("fit", "fit a surface that is a function of point and time to an animation", [&] {
     settings.representation = Representation::sampled;
+    say_preset(settings, report);
     std::vector<Body> bodies = load(sources, settings, report);
     fit(bodies[0], out, settings, report);
   });
   fit_command->add_option("FILE", sources, "the animation")->required()->expected(1);
   fit_command->add_option("-o,--output", out, "write the fitted animation to this GLB");
-  add_fit(fit_command, settings);
+  about_fits(fit_command, settings);
+
+  CLI::App* evaluate_command = app.add_subcommand("evaluate", "how good a representation is, on many animations");
+  evaluate_command->require_subcommand(1);
+  CLI::App* representation_command = command_of(
+      evaluate_command, "representation", "fit each animation, compare it with its mesh on points never seen", [&] {
+        check_output(evaluation.csv.string(), "");
+        check_output(evaluation.markdown.string(), "");
+        evaluation.out = out;
+        unusable = evaluate_representation(sources, settings, evaluation, report);
+      });
+  representation_command
+      ->add_option("FILES", sources, "animations, or folders, which stand for every clip of every file in them")
+      ->required()
+      ->expected(1, 10000);
+  representation_command
+      ->add_option("--frames-trained", evaluation.frames_trained,
+                   "of a second fit from so many frames, tested on the others (0: none)")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1000));
+  representation_command->add_option("-o,--output", out,
+                                     "folder for each animation coloured by its error, and pictures");
+  representation_command->add_option("--csv", evaluation.csv, "write the table to this file");
+  representation_command->add_option("--markdown", evaluation.markdown, "likewise, with the D-SNS paper's beside it");
+  about_fits(representation_command, settings);
 
   CLI::App* register_command =
       command("register", "bring the second animation into correspondence with the first", [&] {
@@ -236,5 +295,5 @@ int main(int argc, char** argv) {
     std::cerr << "dsns: " << error.what() << '\n';
     return 1;
   }
-  return 0;
+  return unusable > 0 ? 1 : 0;
 }

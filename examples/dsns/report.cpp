@@ -35,7 +35,8 @@ struct Report::Json {
   nlohmann::ordered_json& at(const std::string& section, const std::string& key) {
     std::istringstream levels(section.empty() ? key : section + "." + key);
     nlohmann::ordered_json* place = &root;
-    for (std::string level; std::getline(levels, level, '.');) place = &(*place)[level];
+    for (std::string level; std::getline(levels, level, '.');)
+      place = place->is_array() ? &place->at(std::stoul(level)) : &(*place)[level];
     return *place;
   }
 };
@@ -43,9 +44,20 @@ struct Report::Json {
 Report::Report() : json_(std::make_unique<Json>()) {}
 Report::~Report() = default;
 
-void Report::figure(const std::string& key, const std::string& label, const Value& value) {
+void Report::row(const std::string& list) {
+  nlohmann::ordered_json& rows = json_->at("", list);
+  rows.push_back(nlohmann::ordered_json::object());
+  section_ = message(list, ".", rows.size() - 1);
+}
+
+void Report::note(const std::string& key, const Value& value) {
   nlohmann::ordered_json& place = json_->at(section_, key);
   std::visit([&](const auto& v) { place = v; }, value);
+}
+
+void Report::figure(const std::string& key, const std::string& label, const Value& value) {
+  note(key, value);
+  const nlohmann::ordered_json& place = json_->at(section_, key);
   std::cout << "  " << label << std::string(label.size() < 44 ? 44 - label.size() : 1, ' ') << readable(place) << '\n';
 }
 

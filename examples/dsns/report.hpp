@@ -24,9 +24,13 @@ class Report {
   /// From here on keys are below this one, levels separated by dots; empty: the top.
   void section(const std::string& key) { section_ = key; }
   const std::string& section() const { return section_; }
+  /// Puts a new object at the end of a list; from here on keys are in it.
+  void row(const std::string& list);
   using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>>;
   /// A figure; `key` names its place in the JSON, levels separated by dots.
   void figure(const std::string& key, const std::string& label, const Value& value);
+  /// The same for the JSON only.
+  void note(const std::string& key, const Value& value);
   template <std::integral T>
   void figure(const std::string& key, const std::string& label, T value) {
     if constexpr (std::is_same_v<T, bool>)

@@ -1,5 +1,6 @@
 // inspect and fit: what is said of one animation.
 #include "commands.hpp"
+#include "fits.hpp"
 #include "scene.hpp"
 
 #include <dsns/io/gltf_reader.hpp>
@@ -51,15 +52,8 @@ void inspect(const std::string& name, const Settings& settings, Report& report) 
 void fit(Body& body, const std::filesystem::path& out, const Settings& settings, Report& report) {
   ProgressLine line;
   const FitFigures f = fit_body(body, settings, std::ref(line));
-  report.figure("msd_heldout", "mean squared coordinate error, held out", f.msd);
-  report.figure("rms_distance_heldout", "RMS distance, held out", f.rms_distance);
-  report.figure("max_distance_heldout", "largest distance, held out", f.max_distance);
-  report.figure("normal_angle_mean_deg", "mean angle of normals, degrees", f.normal_angle_mean_deg);
-  report.figure("parameters", "parameters", f.parameters);
-  report.figure("steps", "steps", f.steps);
-  report.figure("cpu_seconds", "CPU-seconds", f.cpu_seconds);
-  report.say(
-      "  Lengths: the smallest ball around the centroid that holds all frames, root motion removed, has radius 1.");
+  report_fit(f, report);
+  say_fit_units(report);
   if (out.empty()) return;
   const MeshSequence& sequence = body.normalized.sequence;
   Scene scene;

@@ -1,6 +1,7 @@
 #include "catch.hpp"
 
 #include <dsns/nn/fit.hpp>
+#include <dsns/nn/fit_separable.hpp>
 #include <dsns/surface/analytic.hpp>
 #include <dsns/surface/surface_error.hpp>
 
@@ -20,6 +21,21 @@ struct PulsingEllipsoid {
   }
 };
 static_assert(AnimatedSurface<PulsingEllipsoid>);
+
+/// Cubic in time; notes the times at which its positions are asked.
+struct Watched {
+  std::vector<double>* asked = nullptr;
+  template <class T>
+  Vec3<T> operator()(const Vec3<T>& s, const T& t) const {
+    return {(2.0 + t * t * t - t) * s.x(), s.y(), (1.0 + t * t) * s.z()};
+  }
+  Mat3X positions(const Mat3X& s, double t) const {
+    asked->push_back(t);
+    Mat3X out(3, s.cols());
+    for (Index i = 0; i < s.cols(); ++i) out.col(i) = (*this)(Vec3d(s.col(i)), t);
+    return out;
+  }
+};
 
 FitOptions quick() {
   FitOptions o;
@@ -167,7 +183,63 @@ TEST_CASE("fit: an observer sees the fit come closer, and a target ends it", "[n
   const FitSummary summary = fit_neural_surface(PulsingEllipsoid{}, o).summary;
   CHECK(summary.stopped == FitStop::target_msd);
   CHECK(summary.loss.back() < 1e-3);
+  CHECK(summary.validation_msd < 1e-3);
   CHECK(summary.steps < 2000);
+}
+
+TEST_CASE("fit: chosen frames alone are learnt, and cubics in time go on between them", "[nn]") {
+  std::vector<double> asked;
+  const std::vector<double> times{0, 0.1, 0.3, 0.55, 0.6, 0.92, 1};
+  SeparableFitOptions o;
+  o.frame_times = times;
+  o.harmonic_degree = 4;
+  o.width = 0;
+  o.points = 500;
+  const SeparableFitResult fit = fit_separable_surface(Watched{&asked}, o);
+  CHECK(asked == times);
+  CHECK(fit.surface.time().times() == times);
+  for (const double t : {0.05, 0.45, 0.8, 1.0})
+    for (const Vec3d& s : {Vec3d(1, 0, 0), Vec3d(0, 0.6, 0.8)})
+      CHECK((fit.surface(s, t) - Watched{}(s, t)).norm() < 1e-4);
+
+  FitOptions network = quick();
+  network.frame_times = times;
+  network.steps = 10;
+  asked.clear();
+  fit_neural_surface(Watched{&asked}, network);
+  CHECK(asked == times);
+  network.frame_times = {0, 0.5, 0.5};
+  CHECK_THROWS_AS(fit_neural_surface(PulsingEllipsoid{}, network), InvalidArgument);
+  o.frame_times = {0, std::nan("")};
+  CHECK_THROWS_AS(fit_separable_surface(PulsingEllipsoid{}, o), InvalidArgument);
+  CHECK_THROWS_AS(TemporalModes(Eigen::MatrixXd::Zero(3, 2), {0, 1}), InvalidArgument);
+}
+
+TEST_CASE("fit: a target error is judged at points that are not trained on", "[nn]") {
+  // Ten points, which a network learns by heart without learning the surface.
+  SeparableFitOptions o;
+  o.frames = 4;
+  o.points = 10;
+  o.harmonic_degree = -1;
+  o.encoding.harmonic_degree = 8;
+  o.width = 32;
+  o.steps = 300;
+  o.target_msd = 1e-5;
+  const SeparableFitSummary by_heart = fit_separable_surface(PulsingEllipsoid{}, o).summary;
+  CHECK(by_heart.training.loss.back() < o.target_msd);
+  CHECK(by_heart.training.validation_msd > o.target_msd);
+  CHECK(by_heart.training.stopped == FitStop::steps);
+  o.points = 2000;
+  o.steps = 3000;
+  o.batch = 256;
+  o.encoding.harmonic_degree = 4;
+  const SeparableFitResult learnt = fit_separable_surface(PulsingEllipsoid{}, o);
+  CHECK(learnt.summary.training.stopped == FitStop::target_msd);
+  CHECK(learnt.summary.training.validation_msd < o.target_msd);
+  std::mt19937_64 random(17);
+  CHECK(compare(learnt.surface, PulsingEllipsoid{}, detail::uniform_sphere_points(400, random), {0, 1. / 3, 1},
+                learnt.surface.scale())
+            .msd < 1.5 * o.target_msd);
 }
 
 TEST_CASE("fit: the paper's configuration has its size", "[nn]") {

@@ -25,12 +25,13 @@ struct Run {
   std::string out, err;
 };
 
+std::string read(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
 Run run(const std::filesystem::path& folder, const std::string& arguments) {
-  const auto read = [](const std::filesystem::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-  };
   const std::string command = "\"" DSNS_PROGRAM "\" " + arguments + " >\"" + (folder / "out").string() + "\" 2>\"" +
                               (folder / "err").string() + "\" </dev/null";
   const int status = std::system(command.c_str());
@@ -45,6 +46,19 @@ MeshSequence growing(const TriangleMesh& mesh) {
   sequence.faces = mesh.faces;
   sequence.frames = {mesh.vertices, 1.1 * mesh.vertices};
   return sequence;
+}
+
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t found = 0;
+  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += word.size()) ++found;
+  return found;
+}
+
+/// The first number after a key of a JSON text.
+double number_after(const std::string& json, const std::string& key) {
+  const std::size_t at = json.find("\"" + key + "\": ");
+  REQUIRE(at != std::string::npos);
+  return std::stod(json.substr(at + key.size() + 4));
 }
 
 void check_refused(const Run& r, const std::string& reason) {
@@ -75,8 +89,15 @@ TEST_CASE("unusable input ends with status 1 and one sentence", "[program]") {
   check_refused(run(folder.path(), "fit " + quoted(file("torus.glb"))), "genus");
   check_refused(run(folder.path(), "fit " + quoted(file("two.glb"))), "pieces");
   check_refused(run(folder.path(), "mean " + quoted(file("ball.glb")) + " " + quoted(file("torus.glb"))), "genus");
+  check_refused(run(folder.path(), "evaluate representation " + quoted(file("nowhere.glb"))), "nowhere.glb");
+  std::filesystem::create_directory(file("empty"));
+  check_refused(run(folder.path(), "evaluate representation " + quoted(file("empty"))), "empty");
   // Before the work, not after it.
-  check_refused(run(folder.path(), "fit " + quoted(file("ball.glb")) + " -o " + quoted(file("none") / "out.glb")), "folder");
+  check_refused(run(folder.path(),
+                    "evaluate representation " + quoted(file("ball.glb")) + " --csv " + quoted(file("none") / "t.csv")),
+                "folder");
+  check_refused(run(folder.path(), "fit " + quoted(file("ball.glb")) + " -o " + quoted(file("none") / "out.glb")),
+                "folder");
   check_refused(run(folder.path(), "fit " + quoted(file("ball.glb")) + " -o " + quoted(file("out.obj"))), ".glb");
 }
 
@@ -84,7 +105,8 @@ TEST_CASE("wrong usage ends with status 2, help with 0", "[program]") {
   const test::TemporaryFolder folder;
   for (const std::string usage :
        {"", "frobnicate", "fit", "register one.glb", "fit a.glb --frames 1", "fit a.glb --threads x",
-        "mean a.glb b.glb --surface cubist", "inspect a.glb --no-such-option"}) {
+        "mean a.glb b.glb --surface cubist", "inspect a.glb --no-such-option", "evaluate", "evaluate shapes a.glb",
+        "evaluate representation", "evaluate representation a.glb --preset quick", "fit a.glb --target-msd x"}) {
     INFO(usage);
     const Run r = run(folder.path(), usage);
     CHECK(r.status == 2);
@@ -94,6 +116,10 @@ TEST_CASE("wrong usage ends with status 2, help with 0", "[program]") {
   CHECK(run(folder.path(), "inspct a.glb").err.find("'inspct'") != std::string::npos);
   CHECK(run(folder.path(), "fit a.glb --step 10").err.find("--step") != std::string::npos);
   CHECK(run(folder.path(), "mean a.glb b.glb --surface cubist").err.find("neural or sampled") != std::string::npos);
+  CHECK(run(folder.path(), "evaluate shapes a.glb").err.find("'shapes'") != std::string::npos);
+  CHECK(run(folder.path(), "evaluate representation a.glb --second 3").err.find("--second") != std::string::npos);
+  CHECK(run(folder.path(), "fit a.glb --preset quick").err.find("fast or general or paper") != std::string::npos);
+  CHECK(run(folder.path(), "evaluate representation --help").status == 0);
   CHECK(run(folder.path(), "--help").status == 0);
   CHECK(run(folder.path(), "mean --help").status == 0);
   CHECK(run(folder.path(), "--version").status == 0);
@@ -105,10 +131,9 @@ TEST_CASE("inspect reports a torus without refusing it, and writes JSON", "[prog
   const Run r = run(folder.path(),
                     "inspect " + quoted(folder.path() / "torus.glb") + " --json " + quoted(folder.path() / "t.json"));
   CHECK(r.status == 0);
-  std::ostringstream json;
-  json << std::ifstream(folder.path() / "t.json").rdbuf();
-  CHECK(json.str().find("\"euler_characteristic\": 0") != std::string::npos);
-  CHECK(json.str().find("\"usable\": false") != std::string::npos);
+  const std::string json = read(folder.path() / "t.json");
+  CHECK(json.find("\"euler_characteristic\": 0") != std::string::npos);
+  CHECK(json.find("\"usable\": false") != std::string::npos);
 }
 
 TEST_CASE("two bodies go through registration, and the result can be read again", "[program]") {
@@ -129,6 +154,63 @@ TEST_CASE("two bodies go through registration, and the result can be read again"
   const MeshSequence way = read_gltf(folder.path() / "way.glb", {"", 6}).sequence;
   CHECK(way.vertex_count() == 3 * icosphere(2).vertices.cols());
   CHECK(way.frame_count() == 6);
+}
+
+TEST_CASE("a representation is evaluated on every file of a folder, and a broken one does not stop the rest",
+          "[program]") {
+  const test::TemporaryFolder folder;
+  const auto file = [&](const std::string& name) { return folder.path() / name; };
+  std::filesystem::create_directories(file("data") / "more");
+  LimbedBody body;
+  body.limbs = {{Vec3d(1, 0.5, 0).normalized(), 6, Vec3d(1, 0.4, 0), Vec3d(0, 0.4, 0.2)}};
+  write_gltf(file("data") / "a.glb", sequence_of(body, icosphere(2), 6));
+  body.pace = 0.4;
+  write_gltf(file("data") / "more" / "c.glb", sequence_of(body, icosphere(2), 6));
+  std::ofstream(file("data") / "b.glb") << "no mesh";
+  const Run r = run(folder.path(), "evaluate representation " + quoted(file("data")) +
+                                       " --preset general --steps 20 --rate 12 --frames-trained 5 -o " +
+                                       quoted(file("maps")) + " --json " + quoted(file("t.json")) + " --csv " +
+                                       quoted(file("t.csv")) + " --markdown " + quoted(file("t.md")));
+  INFO(r.out);
+  check_refused(r, "b.glb");
+  const std::string json = read(file("t.json")), csv = read(file("t.csv")), markdown = read(file("t.md"));
+  const std::string rows =
+      json.substr(json.find("\"rows\": ["), json.find("\"failures\": [") - json.find("\"rows\": ["));
+  for (const std::string key : {"file", "msd_heldout", "rms_distance_heldout", "normal_angle_mean_deg", "wall_seconds"})
+    CHECK(count(rows, "\"" + key + "\": ") == 2);
+  CHECK(number_after(rows, "frames") == 13);
+  CHECK(number_after(rows, "frames_trained") == 5);
+  CHECK(number_after(rows, "steps") == 20);
+  CHECK(number_after(rows, "rms_distance_heldout") == Approx(std::sqrt(3 * number_after(rows, "msd_heldout"))));
+  CHECK(number_after(rows, "ratio_to_interpolation") ==
+        Approx(number_after(rows, "msd_other_frames") / number_after(rows, "msd_interpolation")));
+  CHECK(count(json, "b.glb") >= 1);
+  const double first = number_after(rows, "msd_heldout"),
+               second = number_after(rows.substr(rows.rfind("\"file\": ")), "msd_heldout");
+  const std::string summary = json.substr(json.find("\"summary\": "));
+  CHECK(number_after(summary, "mean") == Approx((first + second) / 2));
+  CHECK(number_after(summary, "median") == Approx((first + second) / 2));
+  CHECK(number_after(summary, "std") == Approx(std::abs(first - second) / std::sqrt(2)).margin(1e-12));
+  CHECK(count(csv, "\n") == 3);
+  CHECK(csv.rfind("file,frames,msd_heldout,", 0) == 0);
+  CHECK(count(markdown, "paper, DFAUST") == 2);
+  CHECK(count(markdown, "c.glb#") == 2);
+  const MeshSequence map = read_gltf(file("maps") / "a_motion_error.glb", {"", 6}).sequence;
+  CHECK(map.vertex_count() == icosphere(2).vertices.cols());
+}
+
+TEST_CASE("a fit ends at its target error, which it names", "[program]") {
+  const test::TemporaryFolder folder;
+  write_gltf(folder.path() / "ball.glb", growing(icosphere(2)));
+  const Run r = run(folder.path(), "fit " + quoted(folder.path() / "ball.glb") +
+                                       " --preset general --frames 2 --target-msd 1e-3 --json " +
+                                       quoted(folder.path() / "t.json"));
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  const std::string json = read(folder.path() / "t.json");
+  CHECK(json.find("\"stop\": \"target\"") != std::string::npos);
+  CHECK(number_after(json, "msd_heldout") < 2e-3);
+  CHECK(number_after(json, "steps") < 12000);
 }
 
 #endif

@@ -133,6 +133,59 @@ TEST_CASE("the jets of a sampled surface are its derivatives inside a triangle",
   }
 }
 
+TEST_CASE("a sampled surface through frames at uneven times passes through them, and is exact for cubics",
+          "[sampled]") {
+  const Fixture body;
+  const std::vector<double> times{0, 0.1, 0.15, 0.5, 0.8, 0.9, 1};
+  MeshSequence sequence = body.sequence;
+  for (std::size_t k = 0; k < times.size(); ++k)
+    sequence.frames[k] = (1 + std::pow(times[k], 3)) * body.sphere.vertices;
+  const SampledSurface surface(sequence, body.sphere.vertices, times);
+  for (const double t : {0.0, 0.1, 0.3, 0.77, 1.0})
+    CHECK((surface.positions(body.sphere.vertices, t) - (1 + t * t * t) * body.sphere.vertices).cwiseAbs().maxCoeff() <
+          1e-12);
+  CHECK_THROWS_AS(SampledSurface(sequence, body.sphere.vertices, {0, 1}), InvalidArgument);
+}
+
+TEST_CASE("interpolated normals of a round sphere point outwards, exactly at symmetric vertices", "[sampled]") {
+  const TriangleMesh ball = icosphere(3);
+  const SampledSurface surface(sequence_of([](const Vec3d& s, double t) { return Vec3d((2 + t) * s); }, ball, 4),
+                               ball.vertices);
+  CHECK((surface.normals(Mat3X(ball.vertices.leftCols(12)), 0.4) - ball.vertices.leftCols(12)).cwiseAbs().maxCoeff() <
+        1e-12);  // those of the icosahedron
+  const Mat3X s = test::random_unit_vectors(200, 3), n = surface.normals(s, 0.4);
+  CHECK((n.colwise().norm().array() - 1).abs().maxCoeff() < 1e-12);
+  // Flat faces' normals are off by up to the angle from a face's middle to its corner, 0.08.
+  CHECK((n - s).colwise().norm().maxCoeff() < 0.02);
+}
+
+TEST_CASE("interpolated normals blend the corners' and leave out faces that close holes", "[sampled]") {
+  Fixture body;
+  body.sequence.cap_faces = 40;
+  const SampledSurface surface(body.sequence, body.sphere.vertices);
+  const Mat3X s = test::random_unit_vectors(200, 5), found = surface.normals(s, 0.5);
+  const auto hits = surface.locate(s);
+  Index caps = 0;
+  for (Index i = 0; i < s.cols(); ++i) {
+    const SphereHit& hit = hits[std::size_t(i)];
+    caps += surface.on_cap(hit);
+    CHECK(surface.on_cap(hit) == (hit.face >= body.sequence.faces.cols() - 40));
+    Vec3d blended = Vec3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+      Vec3d sum = Vec3d::Zero();
+      for (Index f = 0; f < body.sequence.faces.cols() - 40; ++f) {
+        const Eigen::Vector3i face = body.sequence.faces.col(f).cast<int>();
+        if ((face.array() != int(body.sequence.faces(k, hit.face))).all()) continue;
+        const Mat3X& x = body.sequence.frames[3];
+        sum += (x.col(face[1]) - x.col(face[0])).cross(x.col(face[2]) - x.col(face[0]));
+      }
+      blended += hit.barycentric[k] * sum.stableNormalized();
+    }
+    CHECK((blended.stableNormalized() - found.col(i)).norm() < 1e-11);
+  }
+  CHECK(caps > 0);
+}
+
 TEST_CASE("a sampled surface meets the customisation points", "[sampled]") {
   const Fixture body;
   const SampledSurface surface(body.sequence, body.sphere.vertices);

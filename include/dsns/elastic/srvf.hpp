@@ -28,7 +28,7 @@ class Curve {
  private:
   Eigen::VectorXd start_;
   Eigen::MatrixXd velocities_;
-  UniformSpline spline_;
+  CubicSpline spline_;
 };
 
 /// Equidistant times from 0 to 1 with the weights of the trapezoidal rule: the one grid of all integrals over time.

@@ -8,6 +8,7 @@
 ///   const FitResult fit = fit_neural_surface(sampled_surface, options);
 ///   fit.surface(s, t);                               // a NeuralSurface, in the units of the target
 #include <dsns/core/progress.hpp>
+#include <dsns/core/spline.hpp>
 #include <dsns/nn/neural_surface.hpp>
 #include <dsns/nn/surface_problem.hpp>
 
@@ -30,12 +31,13 @@ struct FitOptions {
   int blocks = 2;
   Activation activation = Activation::silu;
 
-  int points = 20000;  ///< of the sphere, drawn once
-  int times = 48;      ///< equidistant in [0, 1]; 1: a surface at rest, taken at t = 0
-  int batch = 1024;    ///< (point, time) pairs a step
+  int points = 20000;                    ///< of the sphere, drawn once
+  int times = 48;                        ///< equidistant in [0, 1]; 1: a surface at rest, taken at t = 0
+  std::vector<double> frame_times = {};  ///< these, increasing, instead of equidistant ones
+  int batch = 1024;                      ///< (point, time) pairs a step
   int steps = 6000;
-  double seconds = 0;           ///< of wall time for the steps; 0: no limit. With a limit runs are not repeatable
-  double target_msd = 0;        ///< stops where the batches' error stays below, in units of scale^2; 0: never
+  double seconds = 0;           ///< of wall time for all; 0: no limit. With a limit runs are not repeatable
+  double target_msd = 0;        ///< stops where the error at other points is below, in units of scale^2; 0: never
   double learning_rate = 1e-2;  ///< at its highest; rises over the first hundredth and falls to 0 along half a cosine
   LossWeights loss = {};
   OptimizerOptions optimizer = {};
@@ -54,8 +56,9 @@ enum class FitStop { steps, seconds, target_msd };
 struct FitSummary {
   int steps = 0;
   Index parameters = 0;
-  double cpu_seconds = 0;    ///< of the whole process
-  std::vector<double> loss;  ///< mean squared coordinate error of the batches, in scale^2, over stretches of steps
+  double cpu_seconds = 0;     ///< of the whole process
+  std::vector<double> loss;   ///< mean squared coordinate error of the batches, in scale^2, over stretches of steps
+  double validation_msd = 0;  ///< at points beside the trained ones, in scale^2, when target_msd was last judged by it
   FitStop stopped = FitStop::steps;
 };
 
@@ -110,10 +113,52 @@ class TrainingClock {
   std::clock_t cpu_start_ = std::clock();
 };
 
-/// Steps until steps, seconds or error end it. `observe(state of the training)` is called now and then.
-template <class T, class Problem, class Observe>
+/// The chosen times, or so many equidistant ones.
+inline std::vector<double> fit_times(int count, const std::vector<double>& chosen) {
+  for (std::size_t k = 0; k < chosen.size(); ++k)
+    require(std::isfinite(chosen[k]) && (k == 0 || chosen[k] > chosen[k - 1]), "fit: frame ", k,
+            " is at t = ", chosen[k], ", give finite times that increase");
+  return chosen.empty() ? equidistant_times(count) : chosen;
+}
+
+/// The target at points that are not trained on, at a few of the times. The error of batches flatters a network that has
+/// seen them, so a target error is judged here; a check costs a few steps.
+template <class F>
+class Validation {
+ public:
+  /// Options: of either fit.
+  template <class Options>
+  Validation(const F& target, const Options& options, const std::vector<double>& times) {
+    if (!(options.target_msd > 0)) return;
+    constexpr int count = 1000;
+    constexpr std::size_t most = 4;
+    std::mt19937_64 random(options.seed + 1);
+    points_ = options.sampler ? options.sampler(count, random) : uniform_sphere_points(count, random);
+    for (std::size_t k = 0, n = std::min(most, times.size()); k < n; ++k)
+      times_.push_back(times[k * (times.size() - 1) / std::max<std::size_t>(n - 1, 1)]);
+    visit_positions(target, points_, times_, [&](Index, const Mat3X& p) { positions_.push_back(p); });
+  }
+
+  /// MSD in units of scale^2.
+  template <class G>
+  double msd(const G& fitted) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < times_.size(); ++k)
+      sum += (fitted.positions(points_, times_[k]) - positions_[k]).squaredNorm();
+    return sum / (3 * double(points_.cols()) * double(times_.size()) * fitted.scale() * fitted.scale());
+  }
+
+ private:
+  Mat3X points_;
+  std::vector<double> times_;
+  std::vector<Mat3X> positions_;
+};
+
+/// Steps until steps, seconds or error end it. `observe(state of the training)` is called now and then, `validate()` gives the
+/// error at other points where that of the batches is below the target.
+template <class T, class Problem, class Observe, class Validate>
 FitSummary train(Trainer<T, Problem>& trainer, const FitOptions& options, const Progress& progress,
-                 const Observe& observe) {
+                 const Observe& observe, const Validate& validate) {
   const CosineRate schedule{0.01, 0};
   FitSummary summary;
   summary.parameters = trainer.network().parameters().size();
@@ -141,7 +186,9 @@ FitSummary train(Trainer<T, Problem>& trainer, const FitOptions& options, const 
     if (++summary.steps % window == 0) {
       summary.loss.push_back(std::exchange(window_loss, 0));
       report(progress, "fit", std::min(done, 1.0));
-      if (summary.loss.back() < options.target_msd) {
+      if (summary.loss.back() >= options.target_msd) continue;
+      summary.validation_msd = validate();
+      if (summary.validation_msd < options.target_msd) {
         summary.stopped = FitStop::target_msd;
         break;
       }
@@ -153,14 +200,14 @@ FitSummary train(Trainer<T, Problem>& trainer, const FitOptions& options, const 
 
 template <class T, JetLayout layout, class F>
 FitResult fit_layout(const F& target, const FitOptions& options, const Progress& progress) {
-  const std::clock_t cpu_start = std::clock();
+  const TrainingClock clock;
   std::mt19937_64 random(options.seed);
   const Mat3X points =
       options.sampler ? options.sampler(options.points, random) : uniform_sphere_points(options.points, random);
   require(points.cols() == options.points && ((points.colwise().norm().array() - 1).abs() < 1e-9).all(),
           "fit: the sampler gave ", points.cols(), " points for ", options.points, ", or not unit vectors");
-  std::vector<double> times(std::size_t(options.times), 0.0);
-  for (std::size_t k = 1; k < times.size(); ++k) times[k] = double(k) / double(times.size() - 1);
+  std::vector<double> times = fit_times(options.times, options.frame_times);
+  const Validation<F> validation(target, options, times);
   const SurfaceProblem<T, layout> problem(target, options.encoding, points, std::move(times), options.loss);
   const MlpShape shape{static_cast<int>(options.encoding.features()), options.width, options.blocks, 3,
                        options.activation};
@@ -171,11 +218,16 @@ FitResult fit_layout(const F& target, const FitOptions& options, const Progress&
     return NeuralSurface(options.encoding, trainer.network().template cast<double>(), problem.ball().translation,
                          problem.ball().scale);
   };
-  const double prepared = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
-  FitSummary summary = train(trainer, options, progress, [&](int steps, double seconds, double cpu_seconds) {
-    options.observer({steps, seconds, cpu_seconds + prepared, surface()});
-  });
-  summary.cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+  const double prepared = clock.cpu_seconds();
+  FitOptions budget = options;
+  if (options.seconds > 0) budget.seconds = std::max(1e-3, options.seconds - clock.seconds());
+  FitSummary summary = train(
+      trainer, budget, progress,
+      [&](int steps, double seconds, double cpu_seconds) {
+        options.observer({steps, seconds, cpu_seconds + prepared, surface()});
+      },
+      [&] { return validation.msd(surface()); });
+  summary.cpu_seconds = clock.cpu_seconds();
   return {surface(), std::move(summary)};
 }
 

@@ -18,6 +18,7 @@ namespace dsns {
 
 struct SeparableFitOptions {
   int frames = 48;             ///< equidistant times in [0, 1] at which the target is sampled, the knots of the splines
+  std::vector<double> frame_times = {};  ///< these, increasing, instead of equidistant ones
   double mode_residual = 1e-9;  ///< as many modes as leave this MSD, in units of scale^2
   int max_modes = 80;
   int harmonic_degree = 30;    ///< of the least squares; -1: none
@@ -33,7 +34,7 @@ struct SeparableFitOptions {
   int batch = 1024;    ///< points a step
   int steps = 3000;
   double seconds = 0;           ///< of wall time for all; 0: no limit. With a limit runs are not repeatable
-  double target_msd = 0;        ///< stops where the batches' error stays below, in units of scale^2; 0: never
+  double target_msd = 0;        ///< stops where the error at other points is below, in units of scale^2; 0: never
   double learning_rate = 1e-2;  ///< at its highest; rises over the first hundredth and falls to 0 along half a cosine
   OptimizerOptions optimizer = {};
   std::uint64_t seed = 0;
@@ -66,10 +67,9 @@ struct SeparatedSamples {
 };
 
 template <class F>
-SeparatedSamples separate(const F& target, const Mat3X& points, const SeparableFitOptions& options) {
-  const Index n = points.cols(), frames = options.frames;
-  std::vector<double> times(std::size_t(frames), 0.0);
-  for (std::size_t k = 1; k < times.size(); ++k) times[k] = double(k) / double(frames - 1);
+SeparatedSamples separate(const F& target, const Mat3X& points, const std::vector<double>& times,
+                          const SeparableFitOptions& options) {
+  const Index n = points.cols(), frames = Index(times.size());
   Eigen::MatrixXf all(3 * n, frames);
   SeparatedSamples out;
   visit_positions(target, points, times, [&](Index k, const Mat3X& p) {
@@ -221,7 +221,10 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
   std::mt19937_64 random(options.seed);
   const Mat3X points = options.sampler ? options.sampler(options.points, random)
                                        : detail::uniform_sphere_points(options.points, random);
-  detail::SeparatedSamples samples = detail::separate(target, points, options);
+  const std::vector<double> times = detail::fit_times(options.frames, options.frame_times);
+  const double frames = double(times.size());
+  const detail::Validation<F> validation(target, options, times);
+  detail::SeparatedSamples samples = detail::separate(target, points, times, options);
   SeparableFitSummary summary;
   summary.modes = samples.values.cols();
   summary.mode_residual = samples.residual;
@@ -230,11 +233,15 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
   if (options.harmonic_degree >= 0)
     harmonics = detail::take_harmonics(samples.fields, points, options.harmonic_degree, options.ridge, options.threads);
   summary.harmonic_residual =
-      double(samples.fields.squaredNorm()) / (3 * double(options.frames) * double(points.cols())) + samples.residual;
+      double(samples.fields.squaredNorm()) / (3 * frames * double(points.cols())) + samples.residual;
 
+  const auto surface = [&](std::optional<Mlp<double>> network) {
+    return SeparableSurface(TemporalModes(samples.values, times), harmonics, options.encoding, std::move(network),
+                            samples.ball.translation, samples.ball.scale);
+  };
   std::optional<Mlp<double>> network;
   if (options.width > 0) {
-    const detail::FieldsProblem problem(options.encoding, points, samples.fields, double(options.frames));
+    const detail::FieldsProblem problem(options.encoding, points, samples.fields, frames);
     const MlpShape shape{static_cast<int>(options.encoding.features()), options.width, options.blocks,
                          static_cast<int>(samples.fields.rows()), options.activation};
     Trainer<float, detail::FieldsProblem> trainer(problem, Mlp<float>(shape, random()),
@@ -244,15 +251,18 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
     budget.seconds = options.seconds > 0 ? std::max(1e-3, options.seconds - clock.seconds()) : 0;
     budget.target_msd = options.target_msd;
     budget.learning_rate = options.learning_rate;
-    summary.training = detail::train(trainer, budget, progress, [](int, double, double) {});
-    network = trainer.network().cast<double>();
-    const Index last = shape.offset(shape.layers() - 1);
-    network->parameters().tail(shape.parameter_count() - last) *= double(problem.unit());
+    const auto scaled = [&] {
+      Mlp<double> out = trainer.network().template cast<double>();
+      const Index last = shape.offset(shape.layers() - 1);
+      out.parameters().tail(shape.parameter_count() - last) *= double(problem.unit());
+      return out;
+    };
+    summary.training = detail::train(
+        trainer, budget, progress, [](int, double, double) {}, [&] { return validation.msd(surface(scaled())); });
+    network = scaled();
   }
   summary.training.cpu_seconds = clock.cpu_seconds();
-  return {SeparableSurface(TemporalModes(std::move(samples.values)), std::move(harmonics), options.encoding,
-                           std::move(network), samples.ball.translation, samples.ball.scale),
-          std::move(summary)};
+  return {surface(std::move(network)), std::move(summary)};
 }
 
 }  // namespace dsns

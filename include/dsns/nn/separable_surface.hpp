@@ -12,13 +12,20 @@
 
 namespace dsns {
 
-/// M functions of time on [0, 1], each a spline through its values at equidistant knots.
+/// M functions of time on [0, 1], each a spline through its values at knots.
 class TemporalModes {
  public:
-  /// values   knots x M
+  /// values   knots x M, the knots equidistant
   explicit TemporalModes(Eigen::MatrixXd values) : values_(std::move(values)), spline_(values_.rows()) {}
+  /// times    of the knots, increasing
+  TemporalModes(Eigen::MatrixXd values, std::vector<double> times)
+      : values_(std::move(values)), spline_(std::move(times)) {
+    require(spline_.knots() == values_.rows(), "TemporalModes: ", values_.rows(), " values at ", spline_.knots(),
+            " times");
+  }
 
   Index modes() const { return values_.cols(); }
+  const std::vector<double>& times() const { return spline_.times(); }
   const Eigen::MatrixXd& values() const { return values_; }
   /// a(t), M values.
   Eigen::VectorXd operator()(double t) const { return values_.transpose() * spline_.weights(t); }
@@ -27,7 +34,7 @@ class TemporalModes {
 
  private:
   Eigen::MatrixXd values_;
-  UniformSpline spline_;
+  CubicSpline spline_;
 };
 
 /// The parts of a separable surface, each of 3 M functions on the sphere: x, y and z of the first mode, of the second, ...
@@ -47,12 +54,12 @@ class BasicSeparableSurface {
         translation_(translation),
         scale_(scale) {
     const Index outputs = 3 * time_.modes();
-    require(harmonics_.rows() == 0 || harmonics_.cols() == outputs, "SeparableSurface: harmonics of ", harmonics_.cols(),
-            " functions for ", time_.modes(), " modes, give three a mode");
+    require(harmonics_.rows() == 0 || harmonics_.cols() == outputs, "SeparableSurface: harmonics of ",
+            harmonics_.cols(), " functions for ", time_.modes(), " modes, give three a mode");
     require(!network_ || (network_->shape().outputs == outputs && network_->shape().inputs == encoding.features() &&
                           encoding.time_features() == 0),
-            "SeparableSurface: a network of ", network_ ? network_->shape().outputs : 0, " outputs for ",
-            time_.modes(), " modes; give it three a mode and an encoding of space alone");
+            "SeparableSurface: a network of ", network_ ? network_->shape().outputs : 0, " outputs for ", time_.modes(),
+            " modes; give it three a mode and an encoding of space alone");
   }
 
   const TemporalModes& time() const { return time_; }

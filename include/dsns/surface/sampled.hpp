@@ -19,7 +19,7 @@ namespace dsns {
 ///   const Mat3X x = body.positions(hits, 0.5), v = body.velocities(hits, 0.5);
 ///
 /// accuracy  its own vertices at its own frames 1e-12, linear fields and cubics in time exact, jets against central
-///           differences 1e-7 [surface/sampled_test]
+///           differences 1e-7, interpolated normals of the sphere 1e-12 at its vertices [surface/sampled_test]
 class SampledSurface {
  public:
   using Hits = std::vector<SphereHit>;
@@ -27,9 +27,15 @@ class SampledSurface {
   /// sphere   3 x n, the images of the vertices on the unit sphere
   /// throws   InvalidArgument where sizes differ, UnusableMesh where the sphere map is not one to one
   SampledSurface(const MeshSequence& sequence, const Mat3X& sphere)
+      : SampledSurface(sequence, sphere, equidistant_times(sequence.frame_count())) {}
+  /// times    of the frames, increasing, for frames that are not equidistant
+  SampledSurface(const MeshSequence& sequence, const Mat3X& sphere, std::vector<double> times)
       : location_(sphere, sequence.faces),
-        spline_(sequence.frame_count()),
-        frames_(3 * sphere.cols(), sequence.frame_count()) {
+        spline_(std::move(times)),
+        frames_(3 * sphere.cols(), sequence.frame_count()),
+        own_faces_(sequence.faces.cols() - sequence.cap_faces) {
+    require(spline_.knots() == frames_.cols(), "SampledSurface: ", spline_.knots(), " times for ", frames_.cols(),
+            " frames");
     for (Index k = 0; k < frames_.cols(); ++k) {
       const Mat3X& frame = sequence.frames[static_cast<std::size_t>(k)];
       require(frame.cols() == sphere.cols(), "SampledSurface: frame ", k, " has ", frame.cols(),
@@ -39,6 +45,8 @@ class SampledSurface {
   }
 
   const SphereLocation& location() const { return location_; }
+  /// Whether a point lies on a face that closes a hole.
+  bool on_cap(const SphereHit& hit) const { return hit.face >= own_faces_; }
   Hits locate(const Mat3X& s) const { return location_.hits(s); }
 
   Vec3d operator()(const Vec3d& s, double t) const {
@@ -57,6 +65,16 @@ class SampledSurface {
   /// dF/dt at n points, 3 x n, length unit per clip.
   Mat3X velocities(const Hits& hits, double t) const { return interpolate(hits, spline_.derivative_weights(t)); }
   Mat3X velocities(const Mat3X& s, double t) const { return velocities(locate(s), t); }
+
+  /// Unit normals at n points, 3 x n, interpolated as renderers do: the vertices' normals, area-weighted means over their
+  /// faces without those that close holes, blended by the barycentrics. Zero where no corner has a face of its own.
+  Mat3X normals(const Hits& hits, double t) const {
+    const Mat3X of_vertices = vertex_normals(blend(spline_.weights(t)), location_.faces().leftCols(own_faces_));
+    Mat3X out = at(hits, of_vertices);
+    for (Index i = 0; i < out.cols(); ++i) out.col(i).stableNormalize();
+    return out;
+  }
+  Mat3X normals(const Mat3X& s, double t) const { return normals(locate(s), t); }
 
   /// The exact 2-jets inside each point's triangle; on an edge those of one side.
   SurfaceJets jets(const ChartBatch& charts, double t) const { return jets(locate(charts.s), charts, t); }
@@ -101,8 +119,10 @@ class SampledSurface {
     return vertices;
   }
 
-  Mat3X interpolate(const Hits& hits, const Eigen::VectorXd& weights) const {
-    const Mat3X vertices = blend(weights);
+  Mat3X interpolate(const Hits& hits, const Eigen::VectorXd& weights) const { return at(hits, blend(weights)); }
+
+  /// A field of the vertices, 3 x n, at points.
+  Mat3X at(const Hits& hits, const Mat3X& vertices) const {
     Mat3X out(3, static_cast<Index>(hits.size()));
     for (Index i = 0; i < out.cols(); ++i) {
       const SphereHit& hit = hits[static_cast<std::size_t>(i)];
@@ -143,8 +163,9 @@ class SampledSurface {
   }
 
   SphereLocation location_;
-  UniformSpline spline_;
+  CubicSpline spline_;
   Eigen::MatrixXd frames_;  // 3 n x frames
+  Index own_faces_;         // the faces before those that close holes
 };
 
 static_assert(AnimatedSurface<SampledSurface>);
