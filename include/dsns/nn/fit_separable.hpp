@@ -40,6 +40,7 @@ struct SeparableFitOptions {
   int threads = 1;  ///< the result does not depend on it
   /// Where points are drawn: n unit vectors, 3 x n. Empty: uniformly on the sphere.
   std::function<Mat3X(int n, std::mt19937_64& random)> sampler = {};
+  CheckpointOptions checkpoint = {};  ///< of the network's training; modes and harmonics are computed anew
 };
 
 struct SeparableFitSummary {
@@ -180,6 +181,7 @@ class FieldsProblem {
 
   float unit() const { return unit_; }
   Index samples() const { return space_.cols(); }
+  std::uint64_t checksum() const { return checksum_of(*fields_, checksum_of(space_, 0)); }
   void fill(std::span<const Index> samples, Eigen::MatrixXf& inputs) const {
     for (std::size_t j = 0; j < samples.size(); ++j) inputs.col(Index(j)) = space_.col(samples[j]);
   }
@@ -196,6 +198,28 @@ class FieldsProblem {
   float unit_;
   double msd_;
 };
+
+inline FitIdentity identity_of(const SeparableFitOptions& o, std::uint64_t target) {
+  FitIdentity id;
+  identify(id, o.encoding);
+  id.add("frames", o.frames);
+  id.add("mode residual", o.mode_residual);
+  id.add("most modes", o.max_modes);
+  id.add("degree of the harmonics", o.harmonic_degree);
+  id.add("ridge", o.ridge);
+  id.add("width", o.width);
+  id.add("blocks", o.blocks);
+  id.add("activation", static_cast<double>(o.activation));
+  id.add("points", o.points);
+  id.add("batch", o.batch);
+  id.add("steps", o.steps);
+  id.add("seconds", o.seconds);
+  id.add("learning rate", o.learning_rate);
+  identify(id, o.optimizer);
+  identify_seed(id, o.seed);
+  id.target = target;
+  return id;
+}
 
 inline void check_separable_options(const SeparableFitOptions& o) {
   require(o.frames > 0 && o.points > 0 && o.steps > 0 && o.batch > 0 && o.threads > 0 && o.width >= 0, "fit: ", o.frames,
@@ -232,6 +256,10 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
   summary.harmonic_residual =
       double(samples.fields.squaredNorm()) / (3 * double(options.frames) * double(points.cols())) + samples.residual;
 
+  const auto surface = [&](std::optional<Mlp<double>> network) {
+    return SeparableSurface(TemporalModes(samples.values), harmonics, options.encoding, std::move(network),
+                            samples.ball.translation, samples.ball.scale);
+  };
   std::optional<Mlp<double>> network;
   if (options.width > 0) {
     const detail::FieldsProblem problem(options.encoding, points, samples.fields, double(options.frames));
@@ -244,15 +272,23 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
     budget.seconds = options.seconds > 0 ? std::max(1e-3, options.seconds - clock.seconds()) : 0;
     budget.target_msd = options.target_msd;
     budget.learning_rate = options.learning_rate;
-    summary.training = detail::train(trainer, budget, progress, [](int, double, double) {});
-    network = trainer.network().cast<double>();
-    const Index last = shape.offset(shape.layers() - 1);
-    network->parameters().tail(shape.parameter_count() - last) *= double(problem.unit());
+    budget.checkpoint = options.checkpoint;
+    const auto learnt = [&] {
+      Mlp<double> out = trainer.network().template cast<double>();
+      const Index last = shape.offset(shape.layers() - 1);
+      out.parameters().tail(shape.parameter_count() - last) *= double(problem.unit());
+      return out;
+    };
+    const double prepared = clock.cpu_seconds();
+    summary.training = detail::train(
+        trainer, budget, detail::identity_of(options, problem.checksum()), progress, [](int, double, double) {},
+        [&](Archive& archive) { store_surface(archive, surface(learnt())); });
+    summary.training.cpu_seconds += prepared;
+    network = learnt();
+  } else {
+    summary.training.cpu_seconds = clock.cpu_seconds();
   }
-  summary.training.cpu_seconds = clock.cpu_seconds();
-  return {SeparableSurface(TemporalModes(std::move(samples.values)), std::move(harmonics), options.encoding,
-                           std::move(network), samples.ball.translation, samples.ball.scale),
-          std::move(summary)};
+  return {surface(std::move(network)), std::move(summary)};
 }
 
 }  // namespace dsns
