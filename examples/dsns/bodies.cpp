@@ -1,4 +1,5 @@
 #include "bodies.hpp"
+#include "checkpoint.hpp"
 
 #include <dsns/core/spline.hpp>
 #include <dsns/io/frame_writer.hpp>
@@ -150,6 +151,8 @@ FitFigures fit_body(Body& body, const Settings& settings, const Progress& progre
     s.rightCols(n - n / 2) = sample_faces(round, sphere, n - n / 2, random);
     return s;
   };
+  const CheckpointFile checkpoint(settings);
+  options.checkpoint = checkpoint.options();
   const FitResult fit = fit_neural_surface(reference, options, progress);
 
   double radius = 0;
@@ -167,7 +170,8 @@ FitFigures fit_body(Body& body, const Settings& settings, const Progress& progre
           e.normal_angle_mean_deg,
           fit.summary.parameters,
           fit.summary.steps,
-          fit.summary.cpu_seconds};
+          fit.summary.cpu_seconds,
+          archive_of(fit.surface)};
 }
 
 std::vector<Mat3X> frames_of(const AnyAnimatedSurface& surface, const Mat3X& sphere, int frames) {

@@ -2,6 +2,7 @@
 /// From a name on the command line to a moving surface that the library can compare with others.
 #include "report.hpp"
 
+#include <dsns/core/archive.hpp>
 #include <dsns/core/progress.hpp>
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/elastic/spatial_options.hpp>
@@ -32,8 +33,10 @@ struct Settings {
   std::string json;
   Representation representation = Representation::sampled;
   RotationSearch search = RotationSearch::upright;
-  int steps = 0;       ///< of the fit; 0: the library's default
-  double seconds = 0;  ///< of the fit; 0: no limit
+  int steps = 0;           ///< of the fit; 0: the library's default
+  double seconds = 0;      ///< of the fit; 0: no limit
+  std::string checkpoint;  ///< file in which a fit keeps what it needs to go on; empty: none
+  bool resume = false;     ///< go on from it, where it is there
 };
 
 /// A file's animation before anything is done to it.
@@ -69,6 +72,7 @@ struct FitFigures {
   Index parameters = 0;
   int steps = 0;
   double cpu_seconds = 0;
+  Archive surface;
 };
 
 /// Reads, repairs and maps; the surface is the sampled mesh. Says in the report what was done.

@@ -1,4 +1,5 @@
 // inspect and fit: what is said of one animation.
+#include "checkpoint.hpp"
 #include "commands.hpp"
 #include "scene.hpp"
 
@@ -9,6 +10,7 @@
 namespace dsns::program {
 
 void inspect(const std::string& name, const Settings& settings, Report& report) {
+  if (lower_extension(parse_source(name).file) == ".dsns") return inspect_surface(parse_source(name).file, report);
   const Source source = read_source(name, settings, Still::allowed);
   const MeshSequence& raw = source.sequence;
   report.say(name + ":");
@@ -61,6 +63,11 @@ void fit(Body& body, const std::filesystem::path& out, const Settings& settings,
   report.say(
       "  Lengths: the smallest ball around the centroid that holds all frames, root motion removed, has radius 1.");
   if (out.empty()) return;
+  if (lower_extension(out) == ".dsns") {
+    write_surface(out, f.surface, body);
+    report.wrote("fitted", out);
+    return;
+  }
   const MeshSequence& sequence = body.normalized.sequence;
   Scene scene;
   scene.add(denormalize(frames_of(body.surface, body.sphere.vertices, sequence.frame_count()), sequence.faces,

@@ -20,7 +20,8 @@ Archive example() {
   twofold << 0.1, std::nextafter(1.0, 2.0), std::nan("");
   archive.set("single", single);
   archive.set("twofold", twofold);
-  archive.set("integers", Archive::Integers(Archive::Integers::Constant(1, 2, std::numeric_limits<std::int64_t>::min())));
+  archive.set("integers",
+              Archive::Integers(Archive::Integers::Constant(1, 2, std::numeric_limits<std::int64_t>::min())));
   archive.set("text", std::string("a\0b\n\xc3\xa4", 6));
   archive.set("nothing", Eigen::MatrixXd(0, 6));
   archive.set("count", 7);
@@ -44,7 +45,10 @@ bool contains(const std::string& whole, const std::string& part) {
 
 /// A file with any body and a right checksum.
 std::string sealed(const std::string& body, std::uint64_t count, std::uint32_t major = 1, std::uint32_t minor = 0) {
-  std::string bytes("\x89" "DSNS\r\n\x1a", 8);
+  std::string bytes(
+      "\x89"
+      "DSNS\r\n\x1a",
+      8);
   detail::append_little_endian(bytes, major);
   detail::append_little_endian(bytes, minor);
   detail::append_little_endian(bytes, std::uint64_t(40 + body.size()));

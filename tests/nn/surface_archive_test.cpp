@@ -30,8 +30,12 @@ BasicNeuralSurface<T> neural(Activation activation = Activation::tanh) {
 template <class T>
 BasicSeparableSurface<T> separable() {
   const SurfaceEncoding encoding = unusual(0);
-  return {TemporalModes(Eigen::MatrixXd::Random(6, 2)), Eigen::MatrixXd::Random(9, 6), encoding,
-          Mlp<T>({static_cast<int>(encoding.features()), 4, 2, 6, Activation::sine}, 7), Vec3d(1, 2, 0.1), 1.7};
+  return {TemporalModes(Eigen::MatrixXd::Random(6, 2)),
+          Eigen::MatrixXd::Random(9, 6),
+          encoding,
+          Mlp<T>({static_cast<int>(encoding.features()), 4, 2, 6, Activation::sine}, 7),
+          Vec3d(1, 2, 0.1),
+          1.7};
 }
 
 template <class S>
@@ -88,7 +92,7 @@ TEST_CASE("surface archive: another kind or precision than asked for is refused"
 TEST_CASE("surface archive: what a reader does not know is left alone", "[nn]") {
   Archive archive = stored(neural<double>());
   archive.set("weather", std::string("rain"));
-  CHECK(surface_from(archive)(Vec3d::UnitX(), 0.3) == neural<double>().positions(Vec3d::UnitX(), 0.3));
+  CHECK(surface_from(archive).positions(points, 0.3) == neural<double>().positions(points, 0.3));
 }
 
 TEST_CASE("surface archive: arrays that do not fit together are refused with one sentence", "[nn]") {
