@@ -110,6 +110,22 @@ void append_entries(std::string& bytes, const V& value) {
   }
 }
 
+inline void append_array(std::string& bytes, const std::string& name, const Archive::Value& value) {
+  append_little_endian(bytes, static_cast<std::uint32_t>(name.size()));
+  append_little_endian(bytes, static_cast<std::uint32_t>(value.index() + 1));
+  std::visit(
+      [&](const auto& v) {
+        auto rows = static_cast<std::uint64_t>(v.size()), cols = std::uint64_t(1);
+        if constexpr (requires { v.rows(); })
+          rows = static_cast<std::uint64_t>(v.rows()), cols = static_cast<std::uint64_t>(v.cols());
+        append_little_endian(bytes, rows);
+        append_little_endian(bytes, cols);
+        bytes += name;
+        append_entries(bytes, v);
+      },
+      value);
+}
+
 /// Takes parts off the front of the bytes, never more than there are.
 class ArchiveReader {
  public:
@@ -169,21 +185,7 @@ inline Archive::Value parse_array(ArchiveReader& reader, std::uint32_t type, std
 
 inline std::string to_bytes(const Archive& archive) {
   std::string body;
-  for (const auto& [name, value] : archive.arrays()) {
-    detail::append_little_endian(body, static_cast<std::uint32_t>(name.size()));
-    detail::append_little_endian(body, static_cast<std::uint32_t>(value.index() + 1));
-    std::visit(
-        [&](const auto& v) {
-          std::uint64_t rows = static_cast<std::uint64_t>(v.size()), cols = 1;
-          if constexpr (requires { v.rows(); })
-            rows = static_cast<std::uint64_t>(v.rows()), cols = static_cast<std::uint64_t>(v.cols());
-          detail::append_little_endian(body, rows);
-          detail::append_little_endian(body, cols);
-          body += name;
-          detail::append_entries(body, v);
-        },
-        value);
-  }
+  for (const auto& [name, value] : archive.arrays()) detail::append_array(body, name, value);
   std::string bytes(detail::archive_magic);
   bytes.reserve(detail::archive_header + body.size() + detail::archive_checksum);
   detail::append_little_endian(bytes, detail::archive_major);

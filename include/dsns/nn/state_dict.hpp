@@ -123,7 +123,8 @@ class StateDictLayers {
     for (const auto& [array, value] : dict_->arrays()) {
       if (!without(array, "frequencies")) continue;
       const Index octaves = weight(0).cols() / 8;
-      const Eigen::ArrayXd ours = 0.1 * Eigen::exp2(Eigen::ArrayXd::LinSpaced(octaves, 0, double(octaves - 1)));
+      Eigen::ArrayXd ours(octaves);
+      for (Index k = 0; k < octaves; ++k) ours[k] = std::ldexp(0.1, int(k));
       const auto& theirs = dict_->get<Eigen::MatrixXd>(array).reshaped();
       require<FileError>(theirs.size() == octaves && ((theirs.array() - ours).abs() <= 1e-5 * ours).all(),
                          dict_->name(), ": '", array, "' are not the ", octaves, " frequencies 0.1 2^k");
