@@ -1,6 +1,6 @@
 // How a network comes near a known surface, derivatives and all: error of positions, normals, mean and Gaussian curvature
 // while it is trained, on an ellipsoid 1:2:5 composed with a diffeomorphism of degree 4 and on a bumpy sphere.
-//   neural_curvature [SECONDS [FILE.csv]]      seconds a network (60), one thread
+//   neural_curvature [SECONDS [FILE.csv]]      about so many CPU-seconds a network (60), one thread
 #include <dsns/geometry/curvature.hpp>
 #include <dsns/nn/fit.hpp>
 #include <dsns/sphere/diffeomorphism.hpp>
@@ -72,8 +72,8 @@ int main(int argc, char** argv) {
       options.times = 1;
       options.batch = 1024;
       options.learning_rate = 1e-2;
-      options.steps = 100000000;
-      options.seconds = seconds;
+      options.steps = 300;
+      options.steps = int(300 * seconds / fit_neural_surface(exact, options).summary.cpu_seconds);
       options.observe_every = seconds / 240;
       options.observer = [&](const FitState& state) {
         if (state.cpu_seconds < next) return;

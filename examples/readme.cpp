@@ -1,5 +1,7 @@
 // The README's ten lines: the curvature of a moving formula, and of a network that learnt it.
-#include <dsns/dsns.hpp>
+#include <dsns/geometry/curvature.hpp>
+#include <dsns/nn/fit.hpp>
+#include <dsns/sphere/quadrature.hpp>
 #include <iostream>
 
 int main() {
@@ -12,7 +14,7 @@ int main() {
   };
   const dsns::Mat3X points = dsns::fibonacci_sphere(1000).points;
   std::cout << dsns::curvature(dsns::at_time(body, 0.5), points).gaussian.maxCoeff() << '\n';  // exact
-  const dsns::FitOptions smooth{.encoding = {.harmonic_degree = 4, .harmonic_decay = 2}, .steps = 3000};
+  const dsns::FitOptions smooth{.encoding = {.harmonic_degree = 1}, .steps = 2000};
   const auto network = dsns::fit_neural_surface(body, smooth).surface;  // the same, learnt
   std::cout << dsns::curvature(dsns::at_time(network, 0.5), points).gaussian.maxCoeff() << '\n';
 }

@@ -2,9 +2,12 @@
 /// Everything that needs Eigen alone. glTF is apart: <dsns/io/gltf.hpp> needs tinygltf.
 #include <dsns/elastic/geodesic.hpp>
 #include <dsns/elastic/normalization.hpp>
+#include <dsns/geometry/geodesic_distance.hpp>
 #include <dsns/geometry/integrals.hpp>
 #include <dsns/geometry/mean_curvature_flow.hpp>
 #include <dsns/geometry/spectrum.hpp>
+#include <dsns/geometry/motion.hpp>
+#include <dsns/geometry/operators.hpp>
 #include <dsns/io/archive_file.hpp>
 #include <dsns/io/frames.hpp>
 #include <dsns/io/state_dict_file.hpp>
@@ -16,7 +19,7 @@
 #include <dsns/mesh/sphere_mask.hpp>
 #include <dsns/mesh/sphere_mesh.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
-#include <dsns/nn/fit.hpp>
+#include <dsns/nn/fit_separable.hpp>
 #include <dsns/nn/state_dict.hpp>
 #include <dsns/nn/surface_archive.hpp>
 #include <dsns/stats/moving_mean.hpp>

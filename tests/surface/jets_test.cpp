@@ -71,6 +71,8 @@ TEST_CASE("a harmonic surface has the jets of its scalar path, and projection fi
   const HarmonicSurface f(coefficients);
   const ChartBatch c = charts_at(test::sphere_points());
   const SurfaceJets batch = jets(f, c);
+  const SurfaceTangents first = tangents(f, c);
+  CHECK((first.f - batch.f).norm() + (first.fu - batch.fu).norm() + (first.fv - batch.fv).norm() < 1e-11);
   for (Index i = 0; i < c.size(); ++i) {
     const auto p = f(detail::chart_jet(c, i));
     for (int k = 0; k < 3; ++k) {

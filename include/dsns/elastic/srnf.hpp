@@ -3,7 +3,7 @@
 /// of |h|^2 is the area. A rotation O acts as O h, a diffeomorphism as (h * gamma)(s) = sqrt(J(s)) h(gamma(s)); both keep
 /// the L2 norm, and h of f o gamma is h * gamma.
 /// source   Jermyn, Kurtek, Klassen, Srivastava 2012; the factor sqrt(J) as derived there
-#include <dsns/geometry/curvature.hpp>
+#include <dsns/geometry/fundamental_forms.hpp>
 
 namespace dsns {
 
@@ -35,10 +35,12 @@ inline SrnfJets srnf(const SurfaceJets& j) {
   return out;
 }
 
-/// The field alone, 3 x n.
+/// The field alone, 3 x n: first derivatives of the surface are enough.
+/// throws   DegenerateSurface where the surface is not immersed
+inline Mat3X srnf(const SurfaceTangents& j) { return unit_normals(j) * area_densities(j).cwiseSqrt().asDiagonal(); }
 template <Surface S>
 Mat3X srnf(const S& surface, const Mat3X& s) {
-  return srnf(jets(surface, charts_at(s))).h;
+  return srnf(tangents(surface, charts_at(s)));
 }
 
 }  // namespace dsns

@@ -34,11 +34,11 @@ struct FitOptions {
 
   int points = 20000;  ///< of the sphere, drawn once
   int times = 48;      ///< equidistant in [0, 1]; 1: a surface at rest, taken at t = 0
-  int batch = 4096;    ///< (point, time) pairs a step
-  int steps = 3000;
+  int batch = 1024;    ///< (point, time) pairs a step
+  int steps = 6000;
   double seconds = 0;           ///< of wall time for the steps; 0: no limit. With a limit runs are not repeatable
   double target_msd = 0;        ///< stops where the batches' error stays below, in units of scale^2; 0: never
-  double learning_rate = 3e-3;  ///< at its highest; rises over the first hundredth and falls to 0 along half a cosine
+  double learning_rate = 1e-2;  ///< at its highest; rises over the first hundredth and falls to 0 along half a cosine
   LossWeights loss = {};
   OptimizerOptions optimizer = {};
   double clip_norm = 0;  ///< longest gradient; 0: no limit

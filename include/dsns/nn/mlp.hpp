@@ -162,7 +162,7 @@ class Mlp {
     const auto w = weights(l);
     Eigen::VectorX<X> y(w.rows());
     for (Index i = 0; i < w.rows(); ++i) {
-      X sum(bias(l)[i]);
+      X sum(Weight(bias(l)[i]));
       for (Index k = 0; k < w.cols(); ++k) sum += Weight(w(i, k)) * x[k];
       y[i] = sum;
     }

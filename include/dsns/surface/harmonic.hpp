@@ -24,6 +24,14 @@ class HarmonicSurface {
     return sum;
   }
   Mat3X positions(const Mat3X& s) const { return harmonic_sum<3>(coefficients_, s); }
+  SurfaceTangents tangents(const ChartBatch& c) const {
+    auto [f, fu, fv] = harmonic_sum_tangents<3>(coefficients_, c);
+    SurfaceTangents out(0);
+    out.f = std::move(f);
+    out.fu = std::move(fu);
+    out.fv = std::move(fv);
+    return out;
+  }
   SurfaceJets jets(const ChartBatch& c) const {
     auto [f, fu, fv, fuu, fuv, fvv] = harmonic_sum_jets<3>(coefficients_, c);
     SurfaceJets out(0);
