@@ -31,7 +31,7 @@ SeparableFitOptions options() {
   o.width = 32;
   o.points = 2000;
   o.batch = 256;
-  o.steps = 1500;
+  o.steps = 1000;
   o.checkpoint.every = 0.003;
   return o;
 }
@@ -99,7 +99,7 @@ int main() {
     for (const char* array : {"training.parameters", "optimizer.moment", "optimizer.square"})
       failures += resumed.get<Eigen::MatrixXf>(array) != whole.get<Eigen::MatrixXf>(array);
     failures += resumed.get<Eigen::MatrixXd>("training.loss") != whole.get<Eigen::MatrixXd>("training.loss");
-    failures += resumed.integer("training.steps") != 1500;
+    failures += resumed.integer("training.steps") != options().steps;
     const auto some = [](const Archive& archive) {
       return surface_from(archive).positions(Mat3X::Identity(3, 3), 0.3);
     };
