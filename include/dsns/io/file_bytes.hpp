@@ -25,6 +25,8 @@ inline std::string read_whole_file(const std::filesystem::path& path) {
                      " is a folder: give the name of a file");
   std::ifstream stream(path, std::ios::binary);
   std::string bytes;
+  if (const auto size = std::filesystem::file_size(path, ignored); !ignored)
+    bytes.reserve(static_cast<std::size_t>(size));
   std::array<char, 1 << 16> block;  // many times faster than an iterator, and pipes have no size to ask for
   while (stream.read(block.data(), block.size()) || stream.gcount() > 0)
     bytes.append(block.data(), static_cast<std::size_t>(stream.gcount()));
