@@ -1,5 +1,8 @@
 // seeds FOLDER: the files that the tests make, one folder for each fuzzer.
 #include "support/gltf_fixtures.hpp"
+#include "support/state_dicts.hpp"
+
+#include <dsns/nn/surface_archive.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -42,5 +45,20 @@ int main(int argc, char** argv) {
   write("npy", "float.npy", array("<f4"));
   write("npy", "double.npy", array(">f8"));
   write("repair", "tetrahedron", std::string{"\1\0\1\2\0\3\1\0\2\3\1\3\2", 13});
+  const dsns::SurfaceEncoding space{.harmonic_degree = 1, .time_frequencies = 0}, both{.harmonic_degree = 1};
+  dsns::Archive neural, separable;
+  dsns::store_surface(neural, dsns::BasicNeuralSurface<float>(both, dsns::Mlp<float>({19, 2, 1, 3})));
+  dsns::store_surface(
+      separable, dsns::SeparableSurface(dsns::TemporalModes(Eigen::MatrixXd::Ones(2, 1)), Eigen::MatrixXd::Ones(4, 3),
+                                        space, dsns::Mlp<double>({3, 2, 0, 3})));
+  write("archive", "neural.dsns", to_bytes(neural));
+  write("archive", "separable.dsns", to_bytes(separable));
+  const std::vector<Tensor> layers{{"0.weight", {2, 8}, std::vector<double>(16, 1)},
+                                   {"0.bias", {2}, {1, 2}},
+                                   {"1.weight", {3, 2}, std::vector<double>(6, 1)},
+                                   {"1.bias", {3}, {1, 2, 3}}};
+  write("state_dict", "float.safetensors", safetensors<float>(layers));
+  write("state_dict", "double.safetensors", safetensors<double>(layers));
+  write("state_dict", "float.npz", npz<float>(layers));
   return written ? 0 : 1;
 }

@@ -1,4 +1,5 @@
 #include "bodies.hpp"
+#include "checkpoint.hpp"
 
 #include <dsns/core/spline.hpp>
 #include <dsns/io/frame_writer.hpp>

@@ -2,6 +2,7 @@
 /// From a name on the command line to a moving surface that the library can compare with others.
 #include "report.hpp"
 
+#include <dsns/core/archive.hpp>
 #include <dsns/core/progress.hpp>
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/elastic/spatial_options.hpp>
@@ -34,9 +35,11 @@ struct Settings {
   Representation representation = Representation::sampled;
   RotationSearch search = RotationSearch::upright;
   Preset preset = Preset::general;
-  int steps = 0;          ///< of the fit; 0: the preset's
-  double seconds = 0;     ///< of the fit; 0: no limit
-  double target_msd = 0;  ///< ends the fit; 0: none
+  int steps = 0;           ///< of the fit; 0: the preset's
+  double seconds = 0;      ///< of the fit; 0: no limit
+  double target_msd = 0;   ///< ends the fit; 0: none
+  std::string checkpoint;  ///< file in which a fit keeps what it needs to go on; empty: none
+  bool resume = false;     ///< go on from it, where it is there
 };
 
 /// A file's animation before anything is done to it.

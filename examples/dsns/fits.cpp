@@ -1,5 +1,7 @@
 #include "fits.hpp"
 
+#include "checkpoint.hpp"
+
 #include <dsns/mesh/sampling.hpp>
 #include <dsns/nn/fit_separable.hpp>
 #include <dsns/surface/sampled.hpp>
@@ -26,14 +28,15 @@ auto sampler(const MeshSequence& sequence, const Mat3X& sphere) {
 /// What both kinds of fit are told.
 template <class Options>
 Options told(Options options, const MeshSequence& sequence, const Mat3X& sphere, std::vector<double> times,
-             double target_msd, const Settings& settings) {
+             const CheckpointFile& checkpoint, const Settings& settings) {
   constexpr int endless = 100000000;  // steps, which a budget of seconds ends
   options.frame_times = std::move(times);
   options.sampler = sampler(sequence, sphere);
   options.seed = settings.seed;
   options.threads = settings.threads;
   options.seconds = settings.seconds;
-  options.target_msd = target_msd;
+  options.target_msd = settings.target_msd;
+  options.checkpoint = checkpoint.options();
   if (settings.steps > 0)
     options.steps = settings.steps;
   else if (settings.seconds > 0)
@@ -117,24 +120,24 @@ Fitted fit_frames(const Body& body, const std::vector<int>& frames, const Settin
     return Fitted{surface, f};
   };
   // The fits' own unit is the ball of their samples, which is all but this one.
-  const double target = settings.target_msd;
+  const CheckpointFile checkpoint(settings);
   if (settings.preset == Preset::fast) {
     const SeparableFitResult fit = fit_separable_surface(
-        reference, told(SeparableFitOptions{}, sequence, sphere, times, target, settings), progress);
+        reference, told(SeparableFitOptions{}, sequence, sphere, times, checkpoint, settings), progress);
     const double square = std::pow(fit.surface.scale() / unit, 2);
     f.separable = {fit.summary.modes, square * fit.summary.mode_residual, square * fit.summary.harmonic_residual};
     return finished(fit.surface, fit.summary.training);
   }
   const FitResult fit = fit_neural_surface(
-      reference, told(network_options(settings.preset), sequence, sphere, times, target, settings), progress);
+      reference, told(network_options(settings.preset), sequence, sphere, times, checkpoint, settings), progress);
   return finished(fit.surface, fit.summary);
 }
 
-FitFigures fit_body(Body& body, const Settings& settings, const Progress& progress) {
+Fitted fit_body(Body& body, const Settings& settings, const Progress& progress) {
   const int all = body.normalized.sequence.frame_count();
-  const Fitted fit = fit_frames(body, spread_frames(all, all), settings, progress);
+  Fitted fit = fit_frames(body, spread_frames(all, all), settings, progress);
   body.surface = std::visit([](const auto& surface) { return AnyAnimatedSurface(surface); }, fit.surface);
-  return fit.figures;
+  return fit;
 }
 
 void report_fit(const FitFigures& f, Report& report) {

@@ -43,7 +43,7 @@ std::vector<int> spread_frames(int of, int count);
 Fitted fit_frames(const Body& body, const std::vector<int>& frames, const Settings& settings, const Progress& progress);
 
 /// All frames; the body then has the fitted surface.
-FitFigures fit_body(Body& body, const Settings& settings, const Progress& progress);
+Fitted fit_body(Body& body, const Settings& settings, const Progress& progress);
 
 /// Points of the faces that no fit of this seed sees, 3 x n.
 Mat3X held_out_points(const Body& body, const Settings& settings);

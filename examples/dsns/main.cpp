@@ -179,7 +179,9 @@ int main(int argc, char** argv) {
     CLI::App* sub = parent->add_subcommand(name, what);
     sub->callback([&, run, name] {
       check_output(settings.json, "");
-      if (name != "demo" && name != "representation") check_output(out, ".glb");
+      if (name != "demo" && name != "representation")
+        check_output(out, name == "fit" && dsns::lower_extension(out) == ".dsns" ? ".dsns" : ".glb");
+      check_output(settings.checkpoint, "");
       check_output(overview, ".glb");
       check_own_mesh(own, sources.empty() ? "" : sources.front());
       run();
@@ -214,7 +216,11 @@ int main(int argc, char** argv) {
     fit(bodies[0], out, settings, report);
   });
   fit_command->add_option("FILE", sources, "the animation")->required()->expected(1);
-  fit_command->add_option("-o,--output", out, "write the fitted animation to this GLB");
+  fit_command->add_option("-o,--output", out, "write the fitted animation to this GLB, or the surface to this .dsns");
+  CLI::Option* checkpoint = fit_command->add_option("--checkpoint", settings.checkpoint,
+                                                    "keep what the fit needs to go on in this file, every ten seconds");
+  fit_command->add_flag("--resume", settings.resume, "go on from the checkpoint, where there is one")
+      ->needs(checkpoint);
   about_fits(fit_command, settings);
 
   CLI::App* evaluate_command = app.add_subcommand("evaluate", "how good a representation is, on many animations");

@@ -1,8 +1,10 @@
 // inspect and fit: what is said of one animation.
+#include "checkpoint.hpp"
 #include "commands.hpp"
 #include "fits.hpp"
 #include "scene.hpp"
 
+#include <dsns/io/frames.hpp>
 #include <dsns/io/gltf_reader.hpp>
 #include <dsns/io/source_name.hpp>
 #include <dsns/mesh/diagnosis.hpp>
@@ -10,6 +12,7 @@
 namespace dsns::program {
 
 void inspect(const std::string& name, const Settings& settings, Report& report) {
+  if (lower_extension(parse_source(name).file) == ".dsns") return inspect_surface(parse_source(name).file, report);
   const Source source = read_source(name, settings, Still::allowed);
   const MeshSequence& raw = source.sequence;
   report.say(name + ":");
@@ -51,10 +54,15 @@ void inspect(const std::string& name, const Settings& settings, Report& report) 
 
 void fit(Body& body, const std::filesystem::path& out, const Settings& settings, Report& report) {
   ProgressLine line;
-  const FitFigures f = fit_body(body, settings, std::ref(line));
-  report_fit(f, report);
+  const Fitted fitted = fit_body(body, settings, std::ref(line));
+  report_fit(fitted.figures, report);
   say_fit_units(report);
   if (out.empty()) return;
+  if (lower_extension(out) == ".dsns") {
+    write_surface(out, std::visit([](const auto& surface) { return archive_of(surface); }, fitted.surface), body);
+    report.wrote("fitted", out);
+    return;
+  }
   const MeshSequence& sequence = body.normalized.sequence;
   Scene scene;
   scene.add(denormalize(frames_of(body.surface, body.sphere.vertices, sequence.frame_count()), sequence.faces,

@@ -8,7 +8,9 @@
 #include <dsns/geometry/spectrum.hpp>
 #include <dsns/geometry/motion.hpp>
 #include <dsns/geometry/operators.hpp>
+#include <dsns/io/archive_file.hpp>
 #include <dsns/io/frames.hpp>
+#include <dsns/io/state_dict_file.hpp>
 #include <dsns/mesh/area_ratios.hpp>
 #include <dsns/mesh/join_pieces.hpp>
 #include <dsns/mesh/own_mesh.hpp>
@@ -18,6 +20,8 @@
 #include <dsns/mesh/sphere_mesh.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
 #include <dsns/nn/fit_separable.hpp>
+#include <dsns/nn/state_dict.hpp>
+#include <dsns/nn/surface_archive.hpp>
 #include <dsns/stats/moving_mean.hpp>
 #include <dsns/surface/analytic.hpp>
 #include <dsns/surface/any_surface.hpp>

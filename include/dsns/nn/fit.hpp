@@ -10,7 +10,9 @@
 #include <dsns/core/progress.hpp>
 #include <dsns/core/spline.hpp>
 #include <dsns/nn/neural_surface.hpp>
+#include <dsns/nn/surface_archive.hpp>
 #include <dsns/nn/surface_problem.hpp>
+#include <dsns/nn/training_archive.hpp>
 
 #include <chrono>
 #include <ctime>
@@ -49,6 +51,7 @@ struct FitOptions {
   /// Called about every `observe_every` seconds with what has been learnt so far; its own time does not count.
   std::function<void(const FitState&)> observer = {};
   double observe_every = 1;
+  CheckpointOptions checkpoint = {};
 };
 
 enum class FitStop { steps, seconds, target_msd };
@@ -56,7 +59,7 @@ enum class FitStop { steps, seconds, target_msd };
 struct FitSummary {
   int steps = 0;
   Index parameters = 0;
-  double cpu_seconds = 0;     ///< of the whole process
+  double cpu_seconds = 0;     ///< of the process, and of those that a resumed fit ran in before
   std::vector<double> loss;   ///< mean squared coordinate error of the batches, in scale^2, over stretches of steps
   double validation_msd = 0;  ///< at points beside the trained ones, in scale^2, when target_msd was last judged by it
   FitStop stopped = FitStop::steps;
@@ -96,6 +99,8 @@ inline void check_fit_options(const FitOptions& o) {
 /// Wall and processor time since a start, of which spans can be left out.
 class TrainingClock {
  public:
+  explicit TrainingClock(double seconds = 0) : start_(Clock::now() - to_duration(seconds)) {}
+
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   double cpu_seconds() const { return double(std::clock() - cpu_start_) / CLOCKS_PER_SEC; }
   template <class F>
@@ -109,7 +114,10 @@ class TrainingClock {
 
  private:
   using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
+  static Clock::duration to_duration(double seconds) {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  }
+  Clock::time_point start_;
   std::clock_t cpu_start_ = std::clock();
 };
 
@@ -154,47 +162,92 @@ class Validation {
   std::vector<Mat3X> positions_;
 };
 
-/// Steps until steps, seconds or error end it. `observe(state of the training)` is called now and then, `validate()` gives the
-/// error at other points where that of the batches is below the target.
-template <class T, class Problem, class Observe, class Validate>
-FitSummary train(Trainer<T, Problem>& trainer, const FitOptions& options, const Progress& progress,
-                 const Observe& observe, const Validate& validate) {
+inline FitIdentity identity_of(const FitOptions& o, std::uint64_t target) {
+  FitIdentity id;
+  identify(id, o.encoding);
+  id.add("width", o.width);
+  id.add("blocks", o.blocks);
+  id.add("activation", static_cast<double>(o.activation));
+  id.add("points", o.points);
+  id.add("times", o.frame_times.empty() ? o.times : double(o.frame_times.size()));
+  id.add("batch", o.batch);
+  id.add("steps", o.steps);
+  id.add("seconds", o.seconds);
+  id.add("learning rate", o.learning_rate);
+  id.add("weight of tangents", o.loss.tangents);
+  id.add("weight of normals", o.loss.normals);
+  id.add("clip norm", o.clip_norm);
+  identify(id, o.optimizer);
+  identify_seed(id, o.seed);
+  id.target = target;
+  return id;
+}
+
+/// Steps until steps, seconds or error end it. `observe(steps, seconds, cpu_seconds)` is called now and then, and
+/// `store(archive)` where a checkpoint is due, for the surface; `validate()` gives the error at other points where that of the
+/// batches is below the target.
+template <class T, class Problem, class Observe, class Store, class Validate>
+FitSummary train(Trainer<T, Problem>& trainer, const FitOptions& options, const FitIdentity& identity,
+                 const Progress& progress, const Observe& observe, const Store& store, const Validate& validate) {
   const CosineRate schedule{0.01, 0};
+  TrainingProgress at;
+  at.budget = options.seconds;
+  if (options.checkpoint.resume != nullptr) at = resume_training(*options.checkpoint.resume, identity, trainer);
   FitSummary summary;
   summary.parameters = trainer.network().parameters().size();
+  summary.steps = static_cast<int>(trainer.steps());
   const int window = std::clamp(options.steps / 100, 1, 500);
-  double window_loss = 0, observed = 0;
-  TrainingClock clock;
-  while (summary.steps < options.steps) {
-    double done = (summary.steps + 0.5) / options.steps;
-    const double seconds = clock.seconds();
-    if (options.seconds > 0) {
-      if (seconds >= options.seconds) {
-        summary.stopped = FitStop::seconds;
-        break;
-      }
-      done = std::max(done, seconds / options.seconds);
-    }
-    if (options.observer && seconds >= observed + options.observe_every) {
-      observed = seconds;
-      clock.leave_out([&] { observe(summary.steps, seconds, clock.cpu_seconds()); });
-    }
-    const double loss = trainer.step(options.learning_rate * schedule(done));
-    require<Error>(std::isfinite(loss), "fit: the training diverged at step ", summary.steps,
-                   "; lower the learning rate ", options.learning_rate);
-    window_loss += loss / window;
-    if (++summary.steps % window == 0) {
-      summary.loss.push_back(std::exchange(window_loss, 0));
-      report(progress, "fit", std::min(done, 1.0));
-      if (summary.loss.back() >= options.target_msd) continue;
+  require<FileError>(Index(at.loss.size()) == summary.steps / window, "fit: a checkpoint of ", summary.steps,
+                     " steps with ", at.loss.size(), " errors");
+  TrainingClock clock(at.seconds);
+  const double earlier_cpu_seconds = at.cpu_seconds;
+  const auto checkpoint = [&] {
+    if (!options.checkpoint.write) return;
+    Archive archive;
+    store(archive);
+    store_training(archive, identity, trainer, at);
+    options.checkpoint.write(archive);
+  };
+  double observed = at.seconds, written = -options.checkpoint.every + at.seconds;
+  for (;; ++summary.steps) {
+    at.seconds = clock.seconds();
+    at.cpu_seconds = earlier_cpu_seconds + clock.cpu_seconds();
+    const bool complete = summary.steps > 0 && summary.steps % window == 0;
+    if (complete && at.loss.back() < options.target_msd) {
       summary.validation_msd = validate();
       if (summary.validation_msd < options.target_msd) {
         summary.stopped = FitStop::target_msd;
         break;
       }
     }
+    if (summary.steps >= options.steps) break;
+    double done = (summary.steps + 0.5) / options.steps;
+    if (at.budget > 0) {
+      if (at.seconds >= at.budget) {
+        summary.stopped = FitStop::seconds;
+        break;
+      }
+      done = std::max(done, at.seconds / at.budget);
+    }
+    if (complete) report(progress, "fit", done);
+    if (options.observer && at.seconds >= observed + options.observe_every) {
+      observed = at.seconds;
+      clock.leave_out([&] { observe(summary.steps, at.seconds, at.cpu_seconds); });
+    }
+    if (at.seconds >= written + options.checkpoint.every) {
+      written = at.seconds;
+      checkpoint();
+    }
+    const double loss = trainer.step(options.learning_rate * schedule(done));
+    require<Error>(std::isfinite(loss), "fit: the training diverged at step ", summary.steps,
+                   "; lower the learning rate ", options.learning_rate);
+    at.window_loss += loss / window;
+    if ((summary.steps + 1) % window == 0) at.loss.push_back(std::exchange(at.window_loss, 0));
   }
+  checkpoint();
   report(progress, "fit", 1);
+  summary.loss = std::move(at.loss);
+  summary.cpu_seconds = at.cpu_seconds;
   return summary;
 }
 
@@ -222,12 +275,16 @@ FitResult fit_layout(const F& target, const FitOptions& options, const Progress&
   FitOptions budget = options;
   if (options.seconds > 0) budget.seconds = std::max(1e-3, options.seconds - clock.seconds());
   FitSummary summary = train(
-      trainer, budget, progress,
+      trainer, budget, identity_of(options, problem.checksum()), progress,
       [&](int steps, double seconds, double cpu_seconds) {
         options.observer({steps, seconds, cpu_seconds + prepared, surface()});
       },
+      [&](Archive& archive) {
+        store_surface(archive, BasicNeuralSurface<T>(options.encoding, trainer.network(), problem.ball().translation,
+                                                     problem.ball().scale));
+      },
       [&] { return validation.msd(surface()); });
-  summary.cpu_seconds = clock.cpu_seconds();
+  summary.cpu_seconds += prepared;
   return {surface(), std::move(summary)};
 }
 

@@ -17,12 +17,12 @@
 namespace dsns {
 
 struct SeparableFitOptions {
-  int frames = 48;             ///< equidistant times in [0, 1] at which the target is sampled, the knots of the splines
+  int frames = 48;  ///< equidistant times in [0, 1] at which the target is sampled, the knots of the splines
   std::vector<double> frame_times = {};  ///< these, increasing, instead of equidistant ones
-  double mode_residual = 1e-9;  ///< as many modes as leave this MSD, in units of scale^2
+  double mode_residual = 1e-9;           ///< as many modes as leave this MSD, in units of scale^2
   int max_modes = 80;
-  int harmonic_degree = 30;    ///< of the least squares; -1: none
-  double ridge = 1e-7;         ///< of the least squares, in units of the mean diagonal, at the highest degree
+  int harmonic_degree = 30;  ///< of the least squares; -1: none
+  double ridge = 1e-7;       ///< of the least squares, in units of the mean diagonal, at the highest degree
 
   /// The network on the rest.
   SurfaceEncoding encoding{.harmonic_degree = 20, .time_frequencies = 0};
@@ -41,6 +41,7 @@ struct SeparableFitOptions {
   int threads = 1;  ///< the result does not depend on it
   /// Where points are drawn: n unit vectors, 3 x n. Empty: uniformly on the sphere.
   std::function<Mat3X(int n, std::mt19937_64& random)> sampler = {};
+  CheckpointOptions checkpoint = {};  ///< of the network's training; modes and harmonics are computed anew
 };
 
 struct SeparableFitSummary {
@@ -60,10 +61,10 @@ namespace detail {
 /// The target at points and frames as sum_k values(frame, k) fields(point, k), the columns of values orthonormal: squared
 /// errors of the fields add up to those over all frames.
 struct SeparatedSamples {
-  Eigen::MatrixXd values;   // frames x M; the first column is constant
-  Eigen::MatrixXf fields;   // 3 M x points
+  Eigen::MatrixXd values;  // frames x M; the first column is constant
+  Eigen::MatrixXf fields;  // 3 M x points
   SampleBall ball;
-  double residual = 0;      // MSD left out, in units of scale^2
+  double residual = 0;  // MSD left out, in units of scale^2
 };
 
 template <class F>
@@ -143,7 +144,8 @@ inline Eigen::MatrixXd take_harmonics(Eigen::MatrixXf& fields, const Mat3X& poin
   Eigen::MatrixXd& gram = grams[0];
   for (std::size_t g = 1; g < grams.size(); ++g) gram += grams[g], moments[0] += moments[g];
   const Eigen::ArrayXd l = harmonic_degrees(degree);
-  gram.diagonal().array() += ridge * gram.diagonal().mean() * (l * (l + 1)).square() / std::pow(degree * (degree + 1.0), 2);
+  gram.diagonal().array() +=
+      ridge * gram.diagonal().mean() * (l * (l + 1)).square() / std::pow(degree * (degree + 1.0), 2);
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(gram);
   require<Error>(cholesky.info() == Eigen::Success, "fit: the least squares of degree ", degree, " at ", n,
                  " points are singular; give more points or a lower degree");
@@ -180,6 +182,7 @@ class FieldsProblem {
 
   float unit() const { return unit_; }
   Index samples() const { return space_.cols(); }
+  std::uint64_t checksum() const { return checksum_of(*fields_, checksum_of(space_, 0)); }
   void fill(std::span<const Index> samples, Eigen::MatrixXf& inputs) const {
     for (std::size_t j = 0; j < samples.size(); ++j) inputs.col(Index(j)) = space_.col(samples[j]);
   }
@@ -197,14 +200,37 @@ class FieldsProblem {
   double msd_;
 };
 
+inline FitIdentity identity_of(const SeparableFitOptions& o, std::uint64_t target) {
+  FitIdentity id;
+  identify(id, o.encoding);
+  id.add("frames", o.frame_times.empty() ? o.frames : double(o.frame_times.size()));
+  id.add("mode residual", o.mode_residual);
+  id.add("most modes", o.max_modes);
+  id.add("degree of the harmonics", o.harmonic_degree);
+  id.add("ridge", o.ridge);
+  id.add("width", o.width);
+  id.add("blocks", o.blocks);
+  id.add("activation", static_cast<double>(o.activation));
+  id.add("points", o.points);
+  id.add("batch", o.batch);
+  id.add("steps", o.steps);
+  id.add("seconds", o.seconds);
+  id.add("learning rate", o.learning_rate);
+  identify(id, o.optimizer);
+  identify_seed(id, o.seed);
+  id.target = target;
+  return id;
+}
+
 inline void check_separable_options(const SeparableFitOptions& o) {
-  require(o.frames > 0 && o.points > 0 && o.steps > 0 && o.batch > 0 && o.threads > 0 && o.width >= 0, "fit: ", o.frames,
-          " frames, ", o.points, " points, ", o.steps, " steps, a batch of ", o.batch, ", ", o.threads,
-          " threads, width ", o.width, "; give at least 1, 1, 1, 1, 1 and 0");
+  require(o.frames > 0 && o.points > 0 && o.steps > 0 && o.batch > 0 && o.threads > 0 && o.width >= 0,
+          "fit: ", o.frames, " frames, ", o.points, " points, ", o.steps, " steps, a batch of ", o.batch, ", ",
+          o.threads, " threads, width ", o.width, "; give at least 1, 1, 1, 1, 1 and 0");
   require(o.harmonic_degree >= -1 && (o.harmonic_degree < 0 || harmonic_count(o.harmonic_degree) <= o.points),
           "fit: harmonics of degree ", o.harmonic_degree, " from ", o.points, " points; give more points");
   require(o.harmonic_degree >= 0 || o.width > 0, "fit: neither harmonics nor a network, give one");
-  require(o.encoding.time_features() == 0, "fit: a separable surface has an encoding of space alone, set its time to 0");
+  require(o.encoding.time_features() == 0,
+          "fit: a separable surface has an encoding of space alone, set its time to 0");
 }
 
 }  // namespace detail
@@ -219,8 +245,8 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
   detail::check_separable_options(options);
   const detail::TrainingClock clock;
   std::mt19937_64 random(options.seed);
-  const Mat3X points = options.sampler ? options.sampler(options.points, random)
-                                       : detail::uniform_sphere_points(options.points, random);
+  const Mat3X points =
+      options.sampler ? options.sampler(options.points, random) : detail::uniform_sphere_points(options.points, random);
   const std::vector<double> times = detail::fit_times(options.frames, options.frame_times);
   const double frames = double(times.size());
   const detail::Validation<F> validation(target, options, times);
@@ -251,17 +277,23 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
     budget.seconds = options.seconds > 0 ? std::max(1e-3, options.seconds - clock.seconds()) : 0;
     budget.target_msd = options.target_msd;
     budget.learning_rate = options.learning_rate;
+    budget.checkpoint = options.checkpoint;
     const auto scaled = [&] {
       Mlp<double> out = trainer.network().template cast<double>();
       const Index last = shape.offset(shape.layers() - 1);
       out.parameters().tail(shape.parameter_count() - last) *= double(problem.unit());
       return out;
     };
+    const double prepared = clock.cpu_seconds();
     summary.training = detail::train(
-        trainer, budget, progress, [](int, double, double) {}, [&] { return validation.msd(surface(scaled())); });
+        trainer, budget, detail::identity_of(options, problem.checksum()), progress, [](int, double, double) {},
+        [&](Archive& archive) { store_surface(archive, surface(scaled())); },
+        [&] { return validation.msd(surface(scaled())); });
+    summary.training.cpu_seconds += prepared;
     network = scaled();
+  } else {
+    summary.training.cpu_seconds = clock.cpu_seconds();
   }
-  summary.training.cpu_seconds = clock.cpu_seconds();
   return {surface(std::move(network)), std::move(summary)};
 }
 

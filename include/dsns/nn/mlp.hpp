@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 namespace dsns {
@@ -157,11 +158,12 @@ class Mlp {
 
   template <class X>
   Eigen::VectorX<X> affine(int l, const Eigen::VectorX<X>& x) const {
+    using Weight = std::conditional_t<std::is_floating_point_v<X>, X, T>;
     const auto w = weights(l);
     Eigen::VectorX<X> y(w.rows());
     for (Index i = 0; i < w.rows(); ++i) {
-      X sum(bias(l)[i]);
-      for (Index k = 0; k < w.cols(); ++k) sum += w(i, k) * x[k];
+      X sum(Weight(bias(l)[i]));
+      for (Index k = 0; k < w.cols(); ++k) sum += Weight(w(i, k)) * x[k];
       y[i] = sum;
     }
     return y;

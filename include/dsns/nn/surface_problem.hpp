@@ -4,6 +4,7 @@
 #include <dsns/nn/encodings.hpp>
 #include <dsns/nn/losses.hpp>
 #include <dsns/nn/trainer.hpp>
+#include <dsns/nn/training_archive.hpp>
 #include <dsns/surface/jets.hpp>
 
 #include <array>
@@ -92,6 +93,12 @@ class SurfaceProblem {
 
   Index samples() const { return points_ * time_.cols(); }
   const SampleBall& ball() const { return ball_; }
+  /// Of all that the training reads.
+  std::uint64_t checksum() const {
+    std::uint64_t sum = 0;
+    for (const auto* m : {&space_, &time_, &targets_, &normals_}) sum = checksum_of(*m, sum);
+    return sum;
+  }
 
   void fill(std::span<const Index> samples, Eigen::MatrixX<T>& inputs) const {
     const Index n = Index(samples.size()), rows = space_.rows();
