@@ -12,8 +12,10 @@
 #include <dsns/io/source_name.hpp>
 #include <dsns/surface/sampled.hpp>
 
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <iostream>
@@ -104,10 +106,15 @@ bool draw(const fs::path& file, const fs::path& picture) {
   if (!fs::exists(DSNS_RENDER)) return false;
   std::string script = DSNS_RENDER, from = file.string(), to = picture.string();
   std::array<char*, 4> arguments{script.data(), from.data(), to.data(), nullptr};
+  posix_spawn_file_actions_t quiet;  // what it has to say is whether there is a picture
+  posix_spawn_file_actions_init(&quiet);
+  for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&quiet, stream, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
+  const int failed = posix_spawn(&child, script.c_str(), &quiet, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&quiet);
   int status = 0;
-  if (posix_spawn(&child, script.c_str(), nullptr, nullptr, arguments.data(), environ) != 0) return false;
-  return waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return failed == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 #else
   return false;
 #endif
