@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "scene.hpp"
 
+#include <dsns/io/frames.hpp>
 #include <dsns/io/gltf_reader.hpp>
 #include <dsns/io/source_name.hpp>
 #include <dsns/mesh/diagnosis.hpp>
