@@ -23,18 +23,6 @@ TEST_CASE("frames come in the order of their numbers", "[io]") {
   CHECK(read_frames(folder / "").name == moved.name);
 }
 
-TEST_CASE("names are compared as people do", "[io]") {
-  using detail::natural_less;
-  CHECK(natural_less("f2", "f10"));
-  CHECK_FALSE(natural_less("f10", "f2"));
-  CHECK(natural_less("f002", "f10"));
-  CHECK(natural_less("a1b2", "a1b10"));
-  CHECK(natural_less("a", "b"));
-  CHECK(natural_less("f", "f0"));
-  CHECK(natural_less("f01", "f1") != natural_less("f1", "f01"));  // a strict order needs a winner
-  CHECK_FALSE(natural_less("f1", "f1"));
-}
-
 TEST_CASE("the first frame that differs, and broken lines, are named", "[io]") {
   const test::TemporaryFolder folder;
   const std::string good = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

@@ -181,13 +181,4 @@ TEST_CASE("state dict: what is not the reference network is refused with one sen
   CHECK(said(Archive("weights.npz")).find("no layer") != std::string::npos);
 }
 
-TEST_CASE("state dict: numbers in names are compared as numbers", "[nn]") {
-  CHECK(detail::natural_less("block.2.a", "block.10.a"));
-  CHECK_FALSE(detail::natural_less("block.10.a", "block.2.a"));
-  CHECK(detail::natural_less("block.2.a", "block.2.b"));
-  CHECK(detail::natural_less("block", "block.0"));
-  CHECK_FALSE(detail::natural_less("block.02", "block.2"));
-  CHECK_FALSE(detail::natural_less("block.2", "block.02"));
-}
-
 }  // namespace state_dict_test

@@ -5,6 +5,7 @@
 
 #include <sys/wait.h>
 #include <unistd.h>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <optional>
@@ -26,11 +27,11 @@ struct Wave {
 SeparableFitOptions options() {
   SeparableFitOptions o;
   o.frames = 8;
-  o.harmonic_degree = 4;
-  o.encoding.harmonic_degree = 8;
-  o.width = 32;
-  o.points = 2000;
-  o.batch = 256;
+  o.harmonic_degree = 2;
+  o.encoding.harmonic_degree = 4;
+  o.width = 16;
+  o.points = 500;
+  o.batch = 128;
   o.steps = 1000;
   o.checkpoint.every = 0.003;
   return o;
@@ -67,12 +68,15 @@ int main() {
   int failures = 0, killed = 0;
   try {
     std::mt19937 random(std::random_device{}());
+    std::optional<std::chrono::steady_clock::duration> start;
     while (killed < 20) {
       const std::int64_t before = std::filesystem::exists(path) ? steps_of(read_archive(path)) : 0;
+      const auto born = std::chrono::steady_clock::now();
       const pid_t child = fork();
       if (child == 0) fit_in_child(path);
       while (!std::filesystem::exists(path)) std::this_thread::yield();
-      std::this_thread::sleep_for(std::chrono::milliseconds(random() % 100));
+      if (!start) start = std::chrono::steady_clock::now() - born;  // what this machine needs before the first step
+      std::this_thread::sleep_for(std::chrono::milliseconds(random() % 60) + *start * (random() % 1000) / 500);
       kill(child, SIGKILL);
       int status = 0;
       waitpid(child, &status, 0);

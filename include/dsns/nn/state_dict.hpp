@@ -4,10 +4,10 @@
 ///
 ///   const auto surface = import_state_dict(read_state_dict("weights.npz"));
 #include <dsns/core/archive.hpp>
+#include <dsns/core/natural_order.hpp>
 #include <dsns/nn/neural_surface.hpp>
 
 #include <array>
-#include <charconv>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,28 +31,6 @@ struct StateDictOptions {
 };
 
 namespace detail {
-
-/// Names in the order of people: "block.2" before "block.10".
-inline bool natural_less(std::string_view a, std::string_view b) {
-  const auto number = [](std::string_view& s) {
-    const std::string_view digits = s.substr(0, s.find_first_not_of("0123456789"));
-    s.remove_prefix(digits.size());
-    const auto zeros = std::min(digits.find_first_not_of('0'), digits.size());
-    return digits.substr(zeros);
-  };
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  while (!a.empty() && !b.empty()) {
-    if (is_digit(a[0]) && is_digit(b[0])) {
-      const std::string_view x = number(a), y = number(b);
-      if (x != y) return x.size() != y.size() ? x.size() < y.size() : x < y;
-    } else if (a[0] != b[0]) {
-      return a[0] < b[0];
-    } else {
-      a.remove_prefix(1), b.remove_prefix(1);
-    }
-  }
-  return a.size() < b.size();
-}
 
 /// The layers of a state dict in the order of evaluation, each a matrix and an offset.
 class StateDictLayers {
