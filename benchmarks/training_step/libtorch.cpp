@@ -68,8 +68,7 @@ std::function<double()> libtorch_step(const Workload& workload) {
 void set_libtorch_threads(int threads) {
   at::set_num_threads(threads);
   // Where libtorch multiplies by OpenBLAS with threads of its own, it does not tell it.
-  if (void* const set = dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))
-    reinterpret_cast<void (*)(int)>(set)(threads);
+  if (void* const set = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) reinterpret_cast<void (*)(int)>(set)(threads);
 }
 
 #else

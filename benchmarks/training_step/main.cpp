@@ -135,13 +135,12 @@ void measure(int width, int blocks, Activation activation, int batch, int thread
   const Eigen::MatrixXf a = Eigen::MatrixXf::Random(width, width), b = Eigen::MatrixXf::Random(width, columns);
   std::vector<Eigen::MatrixXf> products(std::size_t(threads), Eigen::MatrixXf(width, columns));
   const auto on_all = [&](const auto& body) { return [&, body] { parallel_for(threads, threads, body); }; };
-  std::vector<std::function<void()>> pieces = {
-      [&] { trainer.step(w.rate); },
-      on_all([&](int k) {
-        auto& product = products[std::size_t(k)];
-        for (int i = 0; i < (1 << 22) / (width * width) + 1; ++i) product.noalias() = a * b;
-      }),
-      on_all([](int) { multiply_add(); })};
+  std::vector<std::function<void()>> pieces = {[&] { trainer.step(w.rate); }, on_all([&](int k) {
+                                                 auto& product = products[std::size_t(k)];
+                                                 for (int i = 0; i < (1 << 22) / (width * width) + 1; ++i)
+                                                   product.noalias() = a * b;
+                                               }),
+                                               on_all([](int) { multiply_add(); })};
   if (libtorch) pieces.push_back([&] { libtorch(); });
   const std::vector<double> t = in_turns(threads, budget, pieces);
 
@@ -149,8 +148,9 @@ void measure(int width, int blocks, Activation activation, int batch, int thread
   const double product = 1e-9 * threads * 2.0 * width * width * columns * ((1 << 22) / (width * width) + 1) / t[1];
   const double peak = 1e-9 * threads * multiply_add_operations / t[2];
   const char* const name = activation == Activation::silu ? "silu" : "softplus";
-  std::printf("%5d x %d %-8s batch %5d, %d threads: %9.2f ms, %6.1f GFLOP/s, %4.2f of the peak of %.0f, %4.2f of a product's",
-              width, blocks, name, batch, threads, 1e3 * t[0], speed, speed / peak, peak, speed / product);
+  std::printf(
+      "%5d x %d %-8s batch %5d, %d threads: %9.2f ms, %6.1f GFLOP/s, %4.2f of the peak of %.0f, %4.2f of a product's",
+      width, blocks, name, batch, threads, 1e3 * t[0], speed, speed / peak, peak, speed / product);
   if (libtorch) std::printf("; libtorch %9.2f ms: %.2f x", 1e3 * t[3], t[3] / t[0]);
   std::printf("\n");
   std::fflush(stdout);

@@ -51,11 +51,11 @@ void multiply_block(std::ptrdiff_t depth, const T* panel, StridedView<T> b, T* c
                     std::ptrdiff_t rows) {
   using Block = ProductBlock<T>;
   using V = typename Block::Vector;
-  V sums[std::size_t(R* N)] = {};
+  V sums[std::size_t(R * N)] = {};
   const auto all = []<std::size_t... I>(std::index_sequence<I...>, const auto& body) DSNS_INLINE_LAMBDA {
     (body(std::integral_constant<std::size_t, I>{}), ...);
   };
-  constexpr auto entries = std::make_index_sequence<std::size_t(R* N)>{};
+  constexpr auto entries = std::make_index_sequence<std::size_t(R * N)>{};
   constexpr auto vectors = std::make_index_sequence<std::size_t(R)>{};
   for (std::ptrdiff_t k = 0; k < depth; ++k, panel += R * Block::lanes, b.data += b.rows) {
     V a[std::size_t(R)];
@@ -115,8 +115,8 @@ void multiply_panel(const StridedView<T>& a, const StridedView<T>& b, std::ptrdi
 }
 
 template <class T, bool add>
-void multiply_depth(const StridedView<T>& a, StridedView<T> b, std::ptrdiff_t m, std::ptrdiff_t depth,
-                    std::ptrdiff_t n, T* c, std::ptrdiff_t stride) {
+void multiply_depth(const StridedView<T>& a, StridedView<T> b, std::ptrdiff_t m, std::ptrdiff_t depth, std::ptrdiff_t n,
+                    T* c, std::ptrdiff_t stride) {
   using Block = ProductBlock<T>;
   // Rows of b far apart fall on the same few lines of the cache: their entries are gathered first.
   const bool far_apart = b.cols == 1 && b.rows >= 512;

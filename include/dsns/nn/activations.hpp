@@ -35,9 +35,9 @@ template <class T>
 void activate(Activation activation, Eigen::Ref<Eigen::ArrayX<T>> y, Eigen::Ref<Eigen::ArrayX<T>> slope) {
   if constexpr (std::is_same_v<T, float>) {
     if (activation == Activation::softplus)
-      return detail::for_lanes(y.size(), y.data(), slope.data(), detail::softplus_lanes);
+      return detail::for_lanes(y.size(), y.data(), slope.data(), detail::SoftplusLanes{});
     if (activation == Activation::silu)
-      return detail::for_lanes(y.size(), y.data(), slope.data(), detail::silu_lanes);
+      return detail::for_lanes(y.size(), y.data(), slope.data(), detail::SiluLanes{});
   }
   switch (activation) {
     case Activation::softplus:

@@ -52,17 +52,21 @@ DSNS_INLINE LogisticLanes logistic(const FloatLanes& x) {
   return {e, select(x < 0, smaller, larger), select(x < 0, larger, smaller)};
 }
 
-/// Replaces x by its softplus and writes the slope.
-DSNS_INLINE void softplus_lanes(FloatLanes& x, FloatLanes& slope) {
-  const LogisticLanes l = logistic(x);
-  x = select(x < 0, FloatLanes(0), x) + log1p_of_unit(l.e);
-  slope = l.s;
-}
-DSNS_INLINE void silu_lanes(FloatLanes& x, FloatLanes& slope) {
-  const LogisticLanes l = logistic(x);
-  x = x * l.s;
-  slope = l.s + x * l.rest;
-}
+/// A number's replacement by its softplus, and the slope there.
+struct SoftplusLanes {
+  DSNS_INLINE void operator()(FloatLanes& x, FloatLanes& slope) const {
+    const LogisticLanes l = logistic(x);
+    x = select(x < 0, FloatLanes(0), x) + log1p_of_unit(l.e);
+    slope = l.s;
+  }
+};
+struct SiluLanes {
+  DSNS_INLINE void operator()(FloatLanes& x, FloatLanes& slope) const {
+    const LogisticLanes l = logistic(x);
+    x = x * l.s;
+    slope = l.s + x * l.rest;
+  }
+};
 
 /// law(y, slope) over n numbers, the last ones in lanes that are filled up with zeros.
 template <class Law>

@@ -60,6 +60,7 @@ class Trainer {
             "Trainer: a batch of ", options.batch, " of ", problem.samples(), " samples, ", options.threads,
             " threads, gradients up to ", options.clip_norm, "; give at least 1, 1, 1 and 0");
     batch_ = std::min<Index>(options.batch, problem.samples());
+    tile_ = std::max<Index>(32, (batch_ < 2048 ? 128 : 256) / Problem::layout.blocks());
     const Index tiles = (batch_ + tile_ - 1) / tile_;
     // Groups of tiles are summed one after the other and then together, so that the sum does not depend on the threads.
     const Index groups = std::min<Index>(tiles, gradient_.size() > 1000000 ? 2 : 8);
@@ -105,8 +106,6 @@ class Trainer {
   }
 
  private:
-  static constexpr Index tile_ = std::max<Index>(32, 128 / Problem::layout.blocks());
-
   struct Group {
     MatrixTape<T> tape;
     Eigen::VectorX<T> gradient;
@@ -148,7 +147,7 @@ class Trainer {
   Eigen::VectorX<T> gradient_;
   std::vector<Index> order_;
   std::vector<Group> groups_;
-  Index batch_ = 0, first_ = 0;
+  Index batch_ = 0, tile_ = 0, first_ = 0;
   std::int64_t steps_ = 0, epoch_ = -1;
 };
 
