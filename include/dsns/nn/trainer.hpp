@@ -53,7 +53,7 @@ class Trainer {
       : problem_(&problem),
         options_(options),
         network_(std::move(network)),
-        optimizer_(network_.shape().blocks_of_parameters(), options.optimizer),
+        optimizer_(network_.shape().blocks_of_parameters(), on_threads(options.optimizer, options.threads)),
         gradient_(network_.parameters().size()),
         order_(std::size_t(problem.samples())) {
     require(options.batch > 0 && options.threads > 0 && options.clip_norm >= 0 && problem.samples() > 0,
@@ -111,6 +111,11 @@ class Trainer {
     Eigen::VectorX<T> gradient;
     double error = 0;
   };
+
+  static OptimizerOptions on_threads(OptimizerOptions options, int threads) {
+    options.soap.threads = std::max(1, threads);
+    return options;
+  }
 
   /// Each epoch is a random order of all samples, of which the last incomplete batch is left out. It follows from the seed
   /// and the epoch's number alone, so that a training can go on from the number of its steps.
