@@ -32,8 +32,8 @@ struct ProductBlock {
   static constexpr int vectors = vector_bytes == 64 ? 4 : 2;  // of 32 or 16 registers, the sums take 24 or 12
   static constexpr int columns = 6;
   static constexpr int rows = vectors * lanes;
-  static constexpr int depth = 192;
-  static constexpr int gathered_columns = 16 * columns;
+  static constexpr int depth = 256;
+  static constexpr int gathered_columns = columns * int(64 / sizeof(T));
   typedef T Vector __attribute__((vector_size(std::max(vector_bytes, std::size_t(16)))));
 };
 
