@@ -73,6 +73,45 @@ TEST_CASE("trainer: a gradient is that of the mean over the batch, whatever the 
   CHECK((moment.matrix() - (1 - AdamOptions{}.beta1) * gradient).norm() < 1e-14 * gradient.norm());
 }
 
+TEST_CASE("trainer: the order of a batch's samples changes its gradient by rounding alone", "[nn]") {
+  TrainerOptions options;
+  options.batch = 500;  // all samples, in an order that follows from the seed
+  options.optimizer.kind = OptimizerKind::adam;
+  const Sine problem;
+  const auto gradient = [&](std::uint64_t seed) {
+    options.seed = seed;
+    auto training = trainer(problem, options);
+    training.step(1e-3);
+    return Eigen::VectorXd(training.optimizer_state().arrays[0].values.matrix());
+  };
+  const Eigen::VectorXd one = gradient(1), other = gradient(2);
+  CHECK(one != other);
+  CHECK((one - other).norm() < 1e-14 * one.norm());
+}
+
+TEST_CASE("trainer: memory is that of a tile, whatever the batch", "[nn]") {
+  struct Weighed : Sine {
+    mutable std::size_t most = 0;
+    Weighed() { x = Eigen::RowVectorXd::LinSpaced(40000, -1, 1); }
+    TileLoss<double> loss(MatrixTape<double>& tape, MatrixTape<double>::Node y, std::span<const Index> chosen) const {
+      const auto tile = Sine::loss(tape, y, chosen);
+      most = std::max(most, tape.bytes());
+      return tile;
+    }
+  };
+  const auto most = [](int batch) {
+    const Weighed problem;
+    TrainerOptions options;
+    options.batch = batch;
+    Trainer<double, Weighed> training(problem, Mlp<double>(shape, 3), options);
+    training.step(1e-3);
+    training.step(1e-3);
+    return problem.most;
+  };
+  CHECK(most(4000) == most(40000));
+  CHECK(most(4000) < 16 * std::size_t(shape.width) * 256 * sizeof(double));
+}
+
 TEST_CASE("trainer: threads do not change a bit, and every sample is taken once an epoch", "[nn]") {
   struct Counting : Sine {
     mutable std::multiset<Index> taken;

@@ -268,6 +268,20 @@ TEST_CASE("soap: gradients of zero, at the start too, do no harm", "[optim]") {
   CHECK(theta.allFinite());
 }
 
+TEST_CASE("soap: threads do not change a bit", "[optim]") {
+  const std::vector<ParameterBlock> blocks = {{0, 20, 7}, {140, 20, 1}, {160, 5, 20}, {260, 5, 1}};
+  const auto moved = [&](int threads) {
+    std::mt19937_64 random(4);
+    Soap<double> soap(blocks, {.refresh = 3, .threads = threads});
+    VectorXd theta = VectorXd::Zero(265);
+    for (int i = 0; i < 20; ++i) soap.step(theta, random_matrix(265, 1, random), 0.1);
+    return theta;
+  };
+  const VectorXd one = moved(1);
+  CHECK(moved(2) == one);
+  CHECK(moved(7) == one);
+}
+
 TEST_CASE("soap: blocks that do not tile the parameters are refused", "[optim]") {
   using Blocks = std::vector<ParameterBlock>;
   CHECK_THROWS_AS(Soap<double>(Blocks{{1, 2, 2}}), InvalidArgument);
@@ -275,6 +289,7 @@ TEST_CASE("soap: blocks that do not tile the parameters are refused", "[optim]")
   CHECK_THROWS_AS(Soap<double>(Blocks{{0, 2, 2}, {5, 2, 1}}), InvalidArgument);
   CHECK_THROWS_AS(Soap<double>(Blocks{{0, 0, 2}}), InvalidArgument);
   CHECK_THROWS_AS(Soap<double>(Blocks{{0, 2, 2}}, {.refresh = 0}), InvalidArgument);
+  CHECK_THROWS_AS(Soap<double>(Blocks{{0, 2, 2}}, {.threads = 0}), InvalidArgument);
   Soap<double> soap(Blocks{{0, 2, 2}, {4, 2, 1}});
   VectorXd theta = VectorXd::Zero(6);
   CHECK_THROWS_AS(soap.step(theta, VectorXd::Zero(5), 1), InvalidArgument);

@@ -19,6 +19,7 @@
 ///   const auto y = matrices.product(matrices.parameter(W, dW), matrices.matrix(3, 1, variables));
 ///   tape.backward(log(matrices.entries(y)[0]));      // one sweep through both
 #include <dsns/autodiff/eigen.hpp>
+#include <dsns/autodiff/products.hpp>
 #include <dsns/autodiff/tape.hpp>
 #include <dsns/core/errors.hpp>
 
@@ -168,10 +169,11 @@ class MatrixTape {
     const Value va = value(a), vb = value(b);
     require(va.cols() == vb.rows(), "MatrixTape::product: ", va.rows(), " x ", va.cols(), " times ", vb.rows(), " x ",
             vb.cols());
-    operation(va.rows(), vb.cols(), {a, b}, [](MatrixTape& tape, const Operation& o) {
-      tape.accumulate(o.operands[0], o.adjoint * tape.value(o.operands[1]).transpose());
-      tape.accumulate(o.operands[1], tape.value(o.operands[0]).transpose() * o.adjoint);
-    }).value.noalias() = va * vb;
+    Operation& o = operation(va.rows(), vb.cols(), {a, b}, [](MatrixTape& tape, const Operation& ab) {
+      tape.accumulate_product(ab.operands[0], ab.adjoint, tape.value(ab.operands[1]).transpose());
+      tape.accumulate_product(ab.operands[1], tape.value(ab.operands[0]).transpose(), ab.adjoint);
+    });
+    set_product(o.value, va, vb);
     return last();
   }
   /// a + b; a single column b is added to every column of a.
@@ -277,6 +279,22 @@ class MatrixTape {
     o.reached = sweep();
   }
 
+  /// The same for the product of two matrices, or transposes of such.
+  template <class A, class B>
+  void accumulate_product(Node node, const A& a, const B& b) {
+    Operation& o = *operations_[node.place];
+    if (!o.active) return;
+    if (o.parameter != nullptr) {
+      add_product(Gradient(o.gradient, o.rows, o.cols), a, b);
+    } else if (o.reached == sweep()) {
+      add_product(o.adjoint, a, b);
+    } else {
+      o.adjoint.resize(a.rows(), b.cols());
+      set_product(o.adjoint, a, b);
+    }
+    o.reached = sweep();
+  }
+
   /// Adds `seed` times the derivatives of a 1 x 1 node to the gradients of all parameters.
   /// throws   InvalidArgument for a larger node
   void backward(Node result, const T& seed = T(1)) {
@@ -316,14 +334,14 @@ class MatrixTape {
             x.cols(), " and residual do not fit");
     Operation& o = operation(w.rows(), x.cols(), operands, [](MatrixTape& tape, const Operation& layer) {
       tape.scratch_ = layer.kept[0].cwiseProduct(layer.adjoint);  // the adjoint before the activation
-      tape.accumulate(layer.operands[0], tape.scratch_ * tape.value(layer.operands[2]).transpose());
+      tape.accumulate_product(layer.operands[0], tape.scratch_, tape.value(layer.operands[2]).transpose());
       tape.accumulate(layer.operands[1], tape.scratch_.rowwise().sum());
-      tape.accumulate(layer.operands[2], tape.value(layer.operands[0]).transpose() * tape.scratch_);
+      tape.accumulate_product(layer.operands[2], tape.value(layer.operands[0]).transpose(), tape.scratch_);
       if (layer.number == 4) tape.accumulate(layer.operands[3], tape.scratch_);
     });
     o.number = Eigen::Index(operands.size());
     o.kept[0].resize(w.rows(), x.cols());
-    o.value.noalias() = w * x;
+    set_product(o.value, w, x);
     for (Eigen::Index j = 0; j < x.cols(); ++j) {
       if (residual)
         o.value.col(j) += b.col(0) + r.col(j);

@@ -52,10 +52,9 @@ void pull_jet_layer(MatrixTape<T>& tape, const typename MatrixTape<T>::Operation
     part(back, i) += second * part(z, j) * part(layer.adjoint, ij);
     part(back, j) += second * part(z, i) * part(layer.adjoint, ij);
   }
-  tape.accumulate(layer.operands[0], back * tape.value(layer.operands[2]).transpose());
+  tape.accumulate_product(layer.operands[0], back, tape.value(layer.operands[2]).transpose());
   tape.accumulate(layer.operands[1], back.leftCols(back.cols() / layout.blocks()).rowwise().sum());
-  if (tape.is_active(layer.operands[2]))
-    tape.accumulate(layer.operands[2], tape.value(layer.operands[0]).transpose() * back);
+  tape.accumulate_product(layer.operands[2], tape.value(layer.operands[0]).transpose(), back);
   if (layer.number == 4) tape.accumulate(layer.operands[3], back);
 }
 
@@ -76,7 +75,8 @@ typename MatrixTape<T>::Node record_jet_layer(MatrixTape<T>& tape,
   auto& o = tape.operation(n, x.cols(), operands, pull_jet_layer<layout, T>);
   o.number = Eigen::Index(operands.size());
   auto& z = o.kept[0];
-  z.noalias() = w * x;
+  z.resize(n, x.cols());
+  set_product(z, w, x);
   if (residual) z += r;
   z.leftCols(m).colwise() += b.col(0);
   for (std::size_t k = 1; k < (layout.seconds > 0 ? 4 : 3); ++k) o.kept[k].resize(n, m);

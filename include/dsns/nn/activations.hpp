@@ -2,8 +2,11 @@
 /// Smooth activation functions: at one scalar of any differentiable type, and over columns of numbers with their first
 /// and second derivatives in a fused pass.
 #include <dsns/autodiff/functions.hpp>
+#include <dsns/nn/fused_activations.hpp>
 
 #include <Eigen/Core>
+
+#include <type_traits>
 
 namespace dsns {
 
@@ -30,6 +33,12 @@ X activate(Activation activation, const X& x) {
 /// accuracy a few ulp of the larger of 1 and |y| [nn/activations_test]
 template <class T>
 void activate(Activation activation, Eigen::Ref<Eigen::ArrayX<T>> y, Eigen::Ref<Eigen::ArrayX<T>> slope) {
+  if constexpr (std::is_same_v<T, float>) {
+    if (activation == Activation::softplus)
+      return detail::for_lanes(y.size(), y.data(), slope.data(), detail::SoftplusLanes{});
+    if (activation == Activation::silu)
+      return detail::for_lanes(y.size(), y.data(), slope.data(), detail::SiluLanes{});
+  }
   switch (activation) {
     case Activation::softplus:
       slope = (1 + (-y).exp()).inverse();

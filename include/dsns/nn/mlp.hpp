@@ -98,7 +98,8 @@ class Mlp {
             shape_.inputs, " inputs in ", blocks, " blocks");
     Matrix y, z;
     const auto layer = [&](int l, const Matrix& in, Matrix& out) {
-      out.noalias() = weights(l) * in;
+      out.resize(shape_.rows(l), in.cols());
+      set_product(out, weights(l), in);
       out.leftCols(in.cols() / blocks).colwise() += bias(l);
     };
     layer(0, x, y);

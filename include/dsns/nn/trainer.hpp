@@ -53,13 +53,14 @@ class Trainer {
       : problem_(&problem),
         options_(options),
         network_(std::move(network)),
-        optimizer_(network_.shape().blocks_of_parameters(), options.optimizer),
+        optimizer_(network_.shape().blocks_of_parameters(), on_threads(options.optimizer, options.threads)),
         gradient_(network_.parameters().size()),
         order_(std::size_t(problem.samples())) {
     require(options.batch > 0 && options.threads > 0 && options.clip_norm >= 0 && problem.samples() > 0,
             "Trainer: a batch of ", options.batch, " of ", problem.samples(), " samples, ", options.threads,
             " threads, gradients up to ", options.clip_norm, "; give at least 1, 1, 1 and 0");
     batch_ = std::min<Index>(options.batch, problem.samples());
+    tile_ = std::max<Index>(32, (batch_ < 2048 ? 128 : 256) / Problem::layout.blocks());
     const Index tiles = (batch_ + tile_ - 1) / tile_;
     // Groups of tiles are summed one after the other and then together, so that the sum does not depend on the threads.
     const Index groups = std::min<Index>(tiles, gradient_.size() > 1000000 ? 2 : 8);
@@ -105,13 +106,16 @@ class Trainer {
   }
 
  private:
-  static constexpr Index tile_ = std::max<Index>(32, 128 / Problem::layout.blocks());
-
   struct Group {
     MatrixTape<T> tape;
     Eigen::VectorX<T> gradient;
     double error = 0;
   };
+
+  static OptimizerOptions on_threads(OptimizerOptions options, int threads) {
+    options.soap.threads = std::max(1, threads);
+    return options;
+  }
 
   /// Each epoch is a random order of all samples, of which the last incomplete batch is left out. It follows from the seed
   /// and the epoch's number alone, so that a training can go on from the number of its steps.
@@ -148,7 +152,7 @@ class Trainer {
   Eigen::VectorX<T> gradient_;
   std::vector<Index> order_;
   std::vector<Group> groups_;
-  Index batch_ = 0, first_ = 0;
+  Index batch_ = 0, tile_ = 0, first_ = 0;
   std::int64_t steps_ = 0, epoch_ = -1;
 };
 

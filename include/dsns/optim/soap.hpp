@@ -12,6 +12,8 @@
 /// Laws are tested in optim/soap_test.
 ///
 /// source   Vyas et al. 2024, "SOAP: Improving and Stabilizing Shampoo using Adam"
+#include <dsns/autodiff/products.hpp>
+#include <dsns/core/parallel.hpp>
 #include <dsns/core/types.hpp>
 #include <dsns/optim/adam.hpp>
 
@@ -32,6 +34,7 @@ struct SoapOptions {
   double weight_decay = 0;    ///< decoupled, as Adam's
   int refresh = 20;           ///< steps from one refresh of a basis to its next
   Index max_dimension = 512;  ///< sides of a matrix that are longer keep the identity as basis
+  int threads = 1;            ///< blocks are moved side by side; the result does not depend on it
 };
 
 /// The state of one optimisation: Adam's moments in the bases ("moment", "square"), the lower triangles of L and R
@@ -44,8 +47,8 @@ class Soap {
   /// blocks   in the order of the parameters, without gaps
   /// throws   InvalidArgument for blocks that overlap, leave a gap or are empty, and for unusable options
   explicit Soap(const std::vector<ParameterBlock>& blocks, const SoapOptions& options = {}) : options_(options) {
-    require(options.refresh > 0 && options.max_dimension >= 0, "Soap: a refresh every ", options.refresh,
-            " steps up to dimension ", options.max_dimension);
+    require(options.refresh > 0 && options.max_dimension >= 0 && options.threads > 0, "Soap: a refresh every ",
+            options.refresh, " steps up to dimension ", options.max_dimension, " on ", options.threads, " threads");
     Index parameters = 0, entries = 0;
     const auto factor = [&](Index dimension) {
       if (dimension > options.max_dimension) return Factor{};
@@ -68,7 +71,8 @@ class Soap {
   void step(Eigen::Ref<Eigen::VectorX<T>> theta, const Eigen::Ref<const Eigen::VectorX<T>>& gradient, double rate) {
     detail::require_matching_size("Soap", theta.size(), gradient.size(), state_.arrays[0].values.size());
     ++state_.steps;
-    for (Block& block : blocks_) {
+    parallel_for(int(blocks_.size()), options_.threads, [&](int k) {
+      Block& block = blocks_[std::size_t(k)];
       const Index begin = block.place.offset;
       const Eigen::Map<const Matrix> g(gradient.data() + begin, block.place.rows, block.place.cols);
       MatrixMap parameters(theta.data() + begin, block.place.rows, block.place.cols);
@@ -82,7 +86,7 @@ class Soap {
       }
       if (block.left.exists()) follow(block, block.left, g);
       if (block.right.exists()) follow(block, block.right, g.transpose());
-    }
+    });
   }
 
   const OptimizerState<T>& state() const { return state_; }
@@ -118,21 +122,21 @@ class Soap {
 
   void into_bases(Block& b) {
     if (b.left.exists()) {
-      b.product.noalias() = basis(b.left).transpose() * b.direction;
+      set_product(b.product, basis(b.left).transpose(), b.direction);
       b.direction.swap(b.product);
     }
     if (b.right.exists()) {
-      b.product.noalias() = b.direction * basis(b.right);
+      set_product(b.product, b.direction, basis(b.right));
       b.direction.swap(b.product);
     }
   }
   void out_of_bases(Block& b) {
     if (b.left.exists()) {
-      b.product.noalias() = basis(b.left) * b.direction;
+      set_product(b.product, basis(b.left), b.direction);
       b.direction.swap(b.product);
     }
     if (b.right.exists()) {
-      b.product.noalias() = b.direction * basis(b.right).transpose();
+      set_product(b.product, b.direction, basis(b.right).transpose());
       b.direction.swap(b.product);
     }
   }
