@@ -113,7 +113,7 @@ class RadialBasis {
   RadialValues<order> at(const detail::ChartColumns& c, std::span<const Index> points,
                          RadialValues<order> storage = {}) const {
     const Index n = Index(points.size());
-    std::array<Eigen::ArrayX3d, 1 + (order > 0 ? 2 : 0)> frame;
+    std::array<Eigen::ArrayX3d, order == 0 ? 1 : 3> frame;
     const std::array<const Mat3X*, 3> sources{&c.s, &c.e1, &c.e2};
     for (std::size_t k = 0; k < frame.size(); ++k) {
       frame[k].resize(n, 3);
