@@ -113,7 +113,8 @@ TEST_CASE("jets of local functions are the limits of differences in the chart", 
   }
 }
 
-TEST_CASE("a local function is 1 at its centre, bends there by 56/3, and joins 0 with all its derivatives", "[surface]") {
+TEST_CASE("a local function is 1 at its centre, bends there by 56/3, and joins 0 with all its derivatives",
+          "[surface]") {
   const double radius = 0.5;
   const RadialSurface f = cap(radius);
   const SurfaceJets centre = jets(f, charts_at(Mat3X(Vec3d(0, 0, 1))));
@@ -133,7 +134,8 @@ TEST_CASE("a local function is 1 at its centre, bends there by 56/3, and joins 0
   }
 }
 
-TEST_CASE("a local function is positive inside its ellipsoid and 0 outside, whatever the tree leaves out", "[surface]") {
+TEST_CASE("a local function is positive inside its ellipsoid and 0 outside, whatever the tree leaves out",
+          "[surface]") {
   const Index n = 200;
   const RadialBasis basis = crooked_basis(n);
   const Mat3X s = test::sphere_points(100);

@@ -2,96 +2,44 @@
 /// Local functions that take from sampled fields what harmonics leave: centres and metrics from the samples, coefficients by
 /// least squares. The samples' fields are also where they lie in the space of the shape's motions, and there, unlike on the
 /// sphere, a finger is as large as it is.
-#include <dsns/core/parallel.hpp>
+#include <dsns/core/block_cholesky.hpp>
+#include <dsns/nn/shape_patches.hpp>
 #include <dsns/surface/radial.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 namespace dsns {
 
 struct RadialFitOptions {
-  int functions = 2000;
-  int neighbours = 10;        ///< centres nearest in shape whose places on the sphere shape a support
-  double width = 2.5;         ///< of a support, in units of 2 standard deviations of those places
-  double refinement = 0.25;   ///< centres are spaced as this power of 1 / (local mean square of what is to be fitted)
-  double ridge = 1e-8;        ///< of the least squares, in units of the mean diagonal
-  int threads = 1;            ///< the result does not depend on it
-};
-
-struct RadialFit {
-  RadialBasis basis;
-  Eigen::MatrixXd coefficients;  ///< functions x fields
+  int functions = 0;         ///< 0: none
+  int neighbours = 10;       ///< centres nearest in shape whose places on the sphere shape a support
+  double width = 2;          ///< of a support, in units of 2 standard deviations of those places
+  double refinement = 0.35;  ///< centres are closer by this power of the local mean square of what is to be fitted
+  double ridge = 1e-9;       ///< of the least squares, in units of the mean diagonal
 };
 
 namespace detail {
 
-/// Squared distances of sample i from all samples; columns of points are coordinates.
-inline Eigen::ArrayXf squared_distances(const Eigen::MatrixXf& points, Index i) {
-  Eigen::ArrayXf out = (points.col(0).array() - points(i, 0)).square();
-  for (Index k = 1; k < points.cols(); ++k) out += (points.col(k).array() - points(i, k)).square();
-  return out;
-}
-
-/// Farthest-point sampling, distances multiplied by `weights`: each centre is where the weighted distance to those before
-/// is largest.
-/// points   samples x coordinates
-struct FarthestPoints {
-  std::vector<Index> centres;
-  std::vector<Index> nearest;  // of each sample, the number of its centre
-};
-inline FarthestPoints farthest_points(const Eigen::MatrixXf& points, const Eigen::ArrayXf& weights, Index count) {
-  FarthestPoints out;
-  out.nearest.assign(std::size_t(points.rows()), 0);
-  Eigen::ArrayXf distance = Eigen::ArrayXf::Constant(points.rows(), std::numeric_limits<float>::max());
-  Index next = 0;
-  for (Index k = 0; k < count; ++k) {
-    out.centres.push_back(next);
-    const Eigen::ArrayXf d = squared_distances(points, next);
-    for (Index i = 0; i < points.rows(); ++i)
-      if (d[i] < distance[i]) distance[i] = d[i], out.nearest[std::size_t(i)] = k;
-    (distance * weights).maxCoeff(&next);
-  }
-  return out;
-}
-
-/// How much closer than elsewhere centres should be: the mean square of the fields over patches of the shape, to a power.
-inline Eigen::ArrayXf refinement_weights(const Eigen::MatrixXf& fields, const Eigen::MatrixXf& shape, double power) {
-  const Index patches = std::min<Index>(300, shape.rows());
-  const FarthestPoints p = farthest_points(shape, Eigen::ArrayXf::Ones(shape.rows()), patches);
-  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(patches), count = sum;
-  for (Index i = 0; i < shape.rows(); ++i) {
-    sum[p.nearest[std::size_t(i)]] += double(fields.col(i).squaredNorm());
-    count[p.nearest[std::size_t(i)]] += 1;
-  }
-  const double mean = sum.sum() / count.sum();
-  const Eigen::ArrayXf local = (sum / count / mean + 1e-3).pow(2 * power).cast<float>();
-  Eigen::ArrayXf out(shape.rows());
-  for (Index i = 0; i < shape.rows(); ++i) out[i] = local[p.nearest[std::size_t(i)]];
-  return out;
-}
-
 /// Functions at samples, each round in the spread of its neighbours' places on the sphere.
 inline RadialBasis radial_basis(const Mat3X& points, const Eigen::MatrixXf& shape, const std::vector<Index>& centres,
-                                const RadialFitOptions& options) {
-  const Index n = Index(centres.size()), near = std::min<Index>(options.neighbours + 1, n);
-  Eigen::MatrixXf places(n, shape.cols());
+                                const RadialFitOptions& options, int threads) {
+  const Index n = Index(centres.size());
+  Eigen::MatrixXf places(shape.rows(), n);
   Mat3X at(3, n);
   for (Index j = 0; j < n; ++j) {
-    places.row(j) = shape.row(centres[std::size_t(j)]);
+    places.col(j) = shape.col(centres[std::size_t(j)]);
     at.col(j) = points.col(centres[std::size_t(j)]).normalized();
   }
+  const ShapePatches patches(places, std::max<Index>(1, n / 30));
   RadialBasis::Metrics metrics(9, n);
-  parallel_for(options.threads, options.threads, [&](int t) {
-    std::vector<std::pair<float, Index>> order(static_cast<std::size_t>(n));
-    for (Index j = t; j < n; j += options.threads) {
-      const Eigen::ArrayXf d = squared_distances(places, j);
-      for (Index k = 0; k < n; ++k) order[std::size_t(k)] = {d[k], k};
-      std::nth_element(order.begin(), order.begin() + near - 1, order.end());
+  constexpr int parts = 64;
+  parallel_for(parts, threads, [&](int part) {
+    for (Index j = part; j < n; j += parts) {
       Mat3 spread = Mat3::Zero();
-      for (Index k = 0; k < near; ++k) {
-        const Vec3d e = at.col(order[std::size_t(k)].second) - at.col(j);
-        spread += e * e.transpose() / double(near);
+      const std::vector<Index> near = patches.nearest(places.col(j), std::min<Index>(options.neighbours + 1, n));
+      for (const Index k : near) {
+        const Vec3d e = at.col(k) - at.col(j);
+        spread += e * e.transpose() / double(near.size());
       }
       // Across the sphere there is nothing to resolve, and no direction may be without length.
       const double size = spread.trace() + 1e-12;
@@ -104,60 +52,132 @@ inline RadialBasis radial_basis(const Mat3X& points, const Eigen::MatrixXf& shap
   return RadialBasis(std::move(at), std::move(metrics));
 }
 
+/// An order of functions in which those that separate two sides of the sphere follow both, in blocks that begin at starts.
+struct Dissection {
+  std::vector<Index> order, starts;
+};
+
+/// sets   functions that overlap: any two that are in no set together are apart
+class Dissector {
+ public:
+  Dissector(const RadialBasis& basis, std::vector<std::vector<Index>> sets)
+      : centres_(basis.centres()), side_(std::size_t(basis.size()), 0) {
+    std::vector<Index> all(std::size_t(basis.size()));
+    std::iota(all.begin(), all.end(), Index(0));
+    dissect(std::move(all), sets);
+    out_.starts.push_back(Index(out_.order.size()));
+  }
+  const Dissection& result() const { return out_; }
+
+ private:
+  static constexpr Index most_ = 128;
+
+  void append(const std::vector<Index>& functions) {
+    const NeighbourGroups groups(Mat3X(centres_(Eigen::all, functions)), most_);
+    for (Index g = 0; g < groups.size(); ++g) {
+      out_.starts.push_back(Index(out_.order.size()));
+      for (const Index k : groups[g]) out_.order.push_back(functions[std::size_t(k)]);
+    }
+  }
+  void dissect(std::vector<Index> functions, const std::vector<std::vector<Index>>& sets) {
+    if (Index(functions.size()) <= most_) return append(functions);
+    const Mat3X places = centres_(Eigen::all, functions);
+    const NeighbourGroups halves(places, (places.cols() + 1) / 2);
+    for (Index h = 0; h < halves.size(); ++h)
+      for (const Index k : halves[h]) side_[std::size_t(functions[std::size_t(k)])] = h == 0 ? 1 : 2;
+    for (const std::vector<Index>& set : sets) {  // functions of the first half that meet the second one separate
+      const auto on = [&](int s) { return [&, s](Index j) { return side_[std::size_t(j)] == s; }; };
+      if (std::any_of(set.begin(), set.end(), on(2)))
+        for (const Index j : set)
+          if (side_[std::size_t(j)] == 1) side_[std::size_t(j)] = 3;
+    }
+    std::array<std::vector<Index>, 3> parts;
+    for (const Index j : functions) parts[std::size_t(std::exchange(side_[std::size_t(j)], 0) - 1)].push_back(j);
+    std::array<std::vector<std::vector<Index>>, 2> inner;
+    for (std::size_t h = 0; h < 2; ++h) {
+      for (const Index j : parts[h]) side_[std::size_t(j)] = 1;
+      for (const std::vector<Index>& set : sets) {
+        std::vector<Index> kept;
+        std::copy_if(set.begin(), set.end(), std::back_inserter(kept),
+                     [&](Index j) { return side_[std::size_t(j)] == 1; });
+        if (kept.size() > 1) inner[h].push_back(std::move(kept));
+      }
+      for (const Index j : parts[h]) side_[std::size_t(j)] = 0;
+    }
+    for (std::size_t h = 0; h < 2; ++h)
+      if (!parts[h].empty()) dissect(std::move(parts[h]), inner[h]);
+    if (!parts[2].empty()) append(parts[2]);
+  }
+
+  const Mat3X& centres_;
+  std::vector<int> side_;
+  Dissection out_;
+};
+
 /// The sums of local functions that are nearest to the fields at the points; the fields keep the rest.
 /// fields   C x points
-/// shape    points x coordinates, where the points lie on the shape
-inline RadialFit take_radial(Eigen::MatrixXf& fields, const Mat3X& points, const Eigen::MatrixXf& shape,
-                             const RadialFitOptions& options) {
-  const Index count = options.functions;
-  const Eigen::ArrayXf weights = refinement_weights(fields, shape, options.refinement);
-  RadialFit out{radial_basis(points, shape, farthest_points(shape, weights, count).centres, options), {}};
-
-  // Groups of neighbouring samples give small dense blocks, which are added in one order whatever the threads do.
+/// shape    coordinates x points, where the points lie on the shape
+inline RadialSum take_radial(Eigen::MatrixXf& fields, const Mat3X& points, const Eigen::MatrixXf& shape,
+                             const RadialFitOptions& options, int threads) {
+  const ChartColumns at{points, points, points};
   const NeighbourGroups groups(points, 64);
-  struct Block {
+  constexpr int parts = 64;
+  RadialSum out;
+  Dissection order;
+  {
+    const RadialBasis basis = radial_basis(
+        points, shape, centres_for(fields, shape, options.functions, options.refinement), options, threads);
+    std::vector<std::vector<Index>> sets(std::size_t(groups.size()));
+    parallel_for(parts, threads, [&](int p) {
+      RadialValues<0> values;
+      for (Index g = p; g < groups.size(); g += parts) {
+        values = basis.at<0>(at, groups[g], std::move(values));
+        sets[std::size_t(g)] = values.functions;
+      }
+    });
+    order = Dissector(basis, std::move(sets)).result();
+    out.basis = RadialBasis(basis.centres()(Eigen::all, order.order), basis.metrics()(Eigen::all, order.order));
+  }
+
+  // Groups of neighbouring samples give small dense matrices, which are added in one order whatever the threads do.
+  struct Share {
     RadialValues<0> values;
     Eigen::MatrixXd gram, moments;
   };
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(count, count);
-  out.coefficients = Eigen::MatrixXd::Zero(count, fields.rows());
-  std::vector<Block> blocks(64);
-  for (Index first = 0; first < groups.size(); first += Index(blocks.size())) {
-    const Index size = std::min(Index(blocks.size()), groups.size() - first);
-    parallel_for(int(size), options.threads, [&](int b) {
-      Block& block = blocks[std::size_t(b)];
+  BlockCholesky gram(order.starts);
+  out.coefficients = Eigen::MatrixXd::Zero(out.basis.size(), fields.rows());
+  std::vector<Share> shares(parts);
+  for (Index first = 0; first < groups.size(); first += parts) {
+    const Index size = std::min<Index>(parts, groups.size() - first);
+    parallel_for(int(size), threads, [&](int b) {
+      Share& share = shares[std::size_t(b)];
       const std::span<const Index> group = groups[first + b];
-      block.values = out.basis.at<0>({points, points, points}, group, std::move(block.values));
+      share.values = out.basis.at<0>(at, group, std::move(share.values));
       Eigen::MatrixXd local(Index(group.size()), fields.rows());
-      for (Index i = 0; i < local.rows(); ++i) local.row(i) = fields.col(group[std::size_t(i)]).transpose().cast<double>();
-      const auto phi = block.values.part(0);
-      block.gram.setZero(phi.cols(), phi.cols());
-      block.gram.selfadjointView<Eigen::Lower>().rankUpdate(phi.transpose());
-      block.moments.noalias() = phi.transpose() * local;
+      for (Index i = 0; i < local.rows(); ++i)
+        local.row(i) = fields.col(group[std::size_t(i)]).transpose().cast<double>();
+      const auto phi = share.values.part(0);
+      share.gram.setZero(phi.cols(), phi.cols());
+      share.gram.selfadjointView<Eigen::Lower>().rankUpdate(phi.transpose());
+      share.moments.noalias() = phi.transpose() * local;
     });
     for (Index b = 0; b < size; ++b) {
-      const Block& block = blocks[std::size_t(b)];
-      const std::vector<Index>& at = block.values.functions;  // increasing, so that lower triangles meet
-      for (Index j = 0; j < Index(at.size()); ++j) {
-        double* const column = gram.col(at[std::size_t(j)]).data();
-        for (Index i = j; i < Index(at.size()); ++i) column[at[std::size_t(i)]] += block.gram(i, j);
-        out.coefficients.row(at[std::size_t(j)]) += block.moments.row(j);
-      }
+      const Share& share = shares[std::size_t(b)];
+      gram.add(share.values.functions, share.gram);
+      for (Index j = 0; j < share.moments.rows(); ++j)
+        out.coefficients.row(share.values.functions[std::size_t(j)]) += share.moments.row(j);
     }
   }
-  gram.diagonal().array() += options.ridge * gram.diagonal().mean();
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(gram);
-  require<Error>(cholesky.info() == Eigen::Success, "fit: the least squares of ", count, " local functions at ",
+  gram.add_ridge(options.ridge);
+  require<Error>(gram.factorize(threads), "fit: the least squares of ", options.functions, " local functions at ",
                  points.cols(), " points are singular; give more points, fewer functions or a larger ridge");
-  cholesky.solveInPlace(out.coefficients);
-  const int parts = 16;
-  parallel_for(parts, options.threads, [&](int p) {
+  gram.solve_in_place(out.coefficients);
+  parallel_for(parts, threads, [&](int p) {
     RadialValues<0> values;
     Eigen::MatrixXd near;
     for (Index g = p; g < groups.size(); g += parts) {
-      values = out.basis.at<0>({points, points, points}, groups[g], std::move(values));
-      near.resize(Index(values.functions.size()), fields.rows());
-      for (Index k = 0; k < near.rows(); ++k) near.row(k) = out.coefficients.row(values.functions[std::size_t(k)]);
+      values = out.basis.at<0>(at, groups[g], std::move(values));
+      near = out.coefficients(values.functions, Eigen::all);
       const Eigen::MatrixXf sums = (near.transpose() * values.part(0).transpose()).cast<float>();
       for (Index i = 0; i < sums.cols(); ++i) fields.col(groups[g][std::size_t(i)]) -= sums.col(i);
     }

@@ -1,6 +1,6 @@
 #pragma once
-/// Fits a separable surface to a moving one: principal components over time, spherical harmonics by least squares, and a
-/// network that learns what they leave. One pass over the samples costs the points, not the points times the frames.
+/// Fits a separable surface to a moving one: principal components over time, spherical harmonics and local functions
+/// by least squares, and a network that learns what they leave. One pass over the samples costs the points, not the points times the frames.
 ///
 ///   SeparableFitOptions options;
 ///   options.frames = 60;
@@ -9,6 +9,7 @@
 ///   fit.surface(s, t);                               // a SeparableSurface, in the units of the target
 #include <dsns/core/progress.hpp>
 #include <dsns/nn/fit.hpp>
+#include <dsns/nn/fit_radial.hpp>
 #include <dsns/nn/separable_surface.hpp>
 
 #include <Eigen/Cholesky>
@@ -17,11 +18,13 @@
 namespace dsns {
 
 struct SeparableFitOptions {
-  int frames = 48;             ///< equidistant times in [0, 1] at which the target is sampled, the knots of the splines
+  int frames = 48;  ///< equidistant times in [0, 1] at which the target is sampled, the knots of the splines
   double mode_residual = 1e-9;  ///< as many modes as leave this MSD, in units of scale^2
   int max_modes = 80;
-  int harmonic_degree = 30;    ///< of the least squares; -1: none
-  double ridge = 1e-7;         ///< of the least squares, in units of the mean diagonal, at the highest degree
+  int harmonic_degree = 30;  ///< of the least squares; -1: none
+  double ridge = 1e-7;       ///< of the least squares, in units of the mean diagonal, at the highest degree
+
+  RadialFitOptions radial = {};  ///< of what the harmonics leave
 
   /// The network on the rest.
   SurfaceEncoding encoding{.harmonic_degree = 20, .time_frequencies = 0};
@@ -46,7 +49,8 @@ struct SeparableFitSummary {
   FitSummary training;
   Index modes = 0;
   double mode_residual = 0;      ///< MSD left by the modes, in units of scale^2
-  double harmonic_residual = 0;  ///< MSD left by the least squares at the samples
+  double harmonic_residual = 0;  ///< MSD left by the harmonics at the samples
+  double radial_residual = 0;    ///< MSD left by the local functions too
 };
 
 struct SeparableFitResult {
@@ -59,10 +63,10 @@ namespace detail {
 /// The target at points and frames as sum_k values(frame, k) fields(point, k), the columns of values orthonormal: squared
 /// errors of the fields add up to those over all frames.
 struct SeparatedSamples {
-  Eigen::MatrixXd values;   // frames x M; the first column is constant
-  Eigen::MatrixXf fields;   // 3 M x points
+  Eigen::MatrixXd values;  // frames x M; the first column is constant
+  Eigen::MatrixXf fields;  // 3 M x points
   SampleBall ball;
-  double residual = 0;      // MSD left out, in units of scale^2
+  double residual = 0;  // MSD left out, in units of scale^2
 };
 
 template <class F>
@@ -143,7 +147,8 @@ inline Eigen::MatrixXd take_harmonics(Eigen::MatrixXf& fields, const Mat3X& poin
   Eigen::MatrixXd& gram = grams[0];
   for (std::size_t g = 1; g < grams.size(); ++g) gram += grams[g], moments[0] += moments[g];
   const Eigen::ArrayXd l = harmonic_degrees(degree);
-  gram.diagonal().array() += ridge * gram.diagonal().mean() * (l * (l + 1)).square() / std::pow(degree * (degree + 1.0), 2);
+  gram.diagonal().array() +=
+      ridge * gram.diagonal().mean() * (l * (l + 1)).square() / std::pow(degree * (degree + 1.0), 2);
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(gram);
   require<Error>(cholesky.info() == Eigen::Success, "fit: the least squares of degree ", degree, " at ", n,
                  " points are singular; give more points or a lower degree");
@@ -198,13 +203,19 @@ class FieldsProblem {
 };
 
 inline void check_separable_options(const SeparableFitOptions& o) {
-  require(o.frames > 0 && o.points > 0 && o.steps > 0 && o.batch > 0 && o.threads > 0 && o.width >= 0, "fit: ", o.frames,
-          " frames, ", o.points, " points, ", o.steps, " steps, a batch of ", o.batch, ", ", o.threads,
-          " threads, width ", o.width, "; give at least 1, 1, 1, 1, 1 and 0");
+  require(o.frames > 0 && o.points > 0 && o.steps > 0 && o.batch > 0 && o.threads > 0 && o.width >= 0,
+          "fit: ", o.frames, " frames, ", o.points, " points, ", o.steps, " steps, a batch of ", o.batch, ", ",
+          o.threads, " threads, width ", o.width, "; give at least 1, 1, 1, 1, 1 and 0");
   require(o.harmonic_degree >= -1 && (o.harmonic_degree < 0 || harmonic_count(o.harmonic_degree) <= o.points),
           "fit: harmonics of degree ", o.harmonic_degree, " from ", o.points, " points; give more points");
-  require(o.harmonic_degree >= 0 || o.width > 0, "fit: neither harmonics nor a network, give one");
-  require(o.encoding.time_features() == 0, "fit: a separable surface has an encoding of space alone, set its time to 0");
+  require(o.radial.functions >= 0 && o.radial.functions <= o.points && o.radial.neighbours > 0 && o.radial.width > 0 &&
+              o.radial.ridge >= 0,
+          "fit: ", o.radial.functions, " local functions from ", o.points, " points, of ", o.radial.neighbours,
+          " neighbours, width ", o.radial.width, ", ridge ", o.radial.ridge, "; give more points and positive numbers");
+  require(o.harmonic_degree >= 0 || o.radial.functions > 0 || o.width > 0,
+          "fit: neither harmonics nor local functions nor a network, give one");
+  require(o.encoding.time_features() == 0,
+          "fit: a separable surface has an encoding of space alone, set its time to 0");
 }
 
 }  // namespace detail
@@ -219,18 +230,27 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
   detail::check_separable_options(options);
   const detail::TrainingClock clock;
   std::mt19937_64 random(options.seed);
-  const Mat3X points = options.sampler ? options.sampler(options.points, random)
-                                       : detail::uniform_sphere_points(options.points, random);
+  const Mat3X points =
+      options.sampler ? options.sampler(options.points, random) : detail::uniform_sphere_points(options.points, random);
   detail::SeparatedSamples samples = detail::separate(target, points, options);
   SeparableFitSummary summary;
   summary.modes = samples.values.cols();
   summary.mode_residual = samples.residual;
 
+  constexpr Index shape_rows = 12;  // the mean and the three strongest modes tell parts of the shape apart
+  const Eigen::MatrixXf places = samples.fields.topRows(std::min(shape_rows, samples.fields.rows()));
+  const auto left = [&] {
+    return double(samples.fields.squaredNorm()) / (3 * double(options.frames) * double(points.cols())) +
+           samples.residual;
+  };
   Eigen::MatrixXd harmonics(0, samples.fields.rows());
   if (options.harmonic_degree >= 0)
     harmonics = detail::take_harmonics(samples.fields, points, options.harmonic_degree, options.ridge, options.threads);
-  summary.harmonic_residual =
-      double(samples.fields.squaredNorm()) / (3 * double(options.frames) * double(points.cols())) + samples.residual;
+  summary.harmonic_residual = left();
+  RadialSum radial;
+  if (options.radial.functions > 0)
+    radial = detail::take_radial(samples.fields, points, places, options.radial, options.threads);
+  summary.radial_residual = left();
 
   std::optional<Mlp<double>> network;
   if (options.width > 0) {
@@ -251,7 +271,7 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
   }
   summary.training.cpu_seconds = clock.cpu_seconds();
   return {SeparableSurface(TemporalModes(std::move(samples.values)), std::move(harmonics), options.encoding,
-                           std::move(network), samples.ball.translation, samples.ball.scale),
+                           std::move(network), samples.ball.translation, samples.ball.scale, std::move(radial)),
           std::move(summary)};
 }
 

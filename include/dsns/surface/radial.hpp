@@ -50,9 +50,8 @@ class NeighbourGroups {
     (high - low).maxCoeff(&axis);
     const auto at = [&](std::size_t k) { return order_.begin() + std::ptrdiff_t(k); };
     const std::size_t middle = first + (last - first) / 2;
-    std::nth_element(at(first), at(middle), at(last), [&](Index a, Index b) {
-      return s(axis, a) != s(axis, b) ? s(axis, a) < s(axis, b) : a < b;
-    });
+    std::nth_element(at(first), at(middle), at(last),
+                     [&](Index a, Index b) { return s(axis, a) != s(axis, b) ? s(axis, a) < s(axis, b) : a < b; });
     split(s, first, middle, most);
     split(s, middle, last, most);
   }
@@ -215,7 +214,7 @@ class RadialBasis {
 
   Mat3X centres_;
   Metrics metrics_;
-  Mat3X low_, high_;  // boxes around the supports
+  Mat3X low_, high_;          // boxes around the supports
   std::vector<Index> order_;  // functions, those of a node contiguous
   std::vector<Node> nodes_;
 };
@@ -269,6 +268,12 @@ FunctionJets<C> radial_sum_jets(const RadialBasis& basis, const HarmonicCoeffici
   auto [f, fu, fv, fuu, fuv, fvv] = detail::radial_sums<2, C>(basis, coefficients, {c.s, c.e1, c.e2});
   return {std::move(f), std::move(fu), std::move(fv), std::move(fuu), std::move(fuv), std::move(fvv)};
 }
+
+/// C functions as sums of those of a basis; coefficients n x C.
+struct RadialSum {
+  RadialBasis basis;
+  Eigen::MatrixXd coefficients;
+};
 
 /// A resting surface whose coordinates are sums of local functions, n x 3 coefficients.
 class RadialSurface {
