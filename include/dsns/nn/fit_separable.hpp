@@ -1,6 +1,7 @@
 #pragma once
 /// Fits a separable surface to a moving one: principal components over time, spherical harmonics and local functions
-/// by least squares, and a network that learns what they leave. One pass over the samples costs the points, not the points times the frames.
+/// by least squares, and a network that learns what they leave. One pass over the samples costs the points, not the points
+/// times the frames.
 ///
 ///   SeparableFitOptions options;
 ///   options.frames = 60;
@@ -18,11 +19,11 @@
 namespace dsns {
 
 struct SeparableFitOptions {
-  int frames = 48;  ///< equidistant times in [0, 1] at which the target is sampled, the knots of the splines
+  int frames = 48;             ///< equidistant times in [0, 1] at which the target is sampled, the knots of the splines
   double mode_residual = 1e-9;  ///< as many modes as leave this MSD, in units of scale^2
   int max_modes = 80;
-  int harmonic_degree = 30;  ///< of the least squares; -1: none
-  double ridge = 1e-7;       ///< of the least squares, in units of the mean diagonal, at the highest degree
+  int harmonic_degree = 30;    ///< of the least squares; -1: none
+  double ridge = 1e-7;         ///< of the least squares, in units of the mean diagonal, at the highest degree
 
   RadialFitOptions radial = {};  ///< of what the harmonics leave
 
@@ -63,10 +64,10 @@ namespace detail {
 /// The target at points and frames as sum_k values(frame, k) fields(point, k), the columns of values orthonormal: squared
 /// errors of the fields add up to those over all frames.
 struct SeparatedSamples {
-  Eigen::MatrixXd values;  // frames x M; the first column is constant
-  Eigen::MatrixXf fields;  // 3 M x points
+  Eigen::MatrixXd values;   // frames x M; the first column is constant
+  Eigen::MatrixXf fields;   // 3 M x points
   SampleBall ball;
-  double residual = 0;  // MSD left out, in units of scale^2
+  double residual = 0;      // MSD left out, in units of scale^2
 };
 
 template <class F>
@@ -147,8 +148,7 @@ inline Eigen::MatrixXd take_harmonics(Eigen::MatrixXf& fields, const Mat3X& poin
   Eigen::MatrixXd& gram = grams[0];
   for (std::size_t g = 1; g < grams.size(); ++g) gram += grams[g], moments[0] += moments[g];
   const Eigen::ArrayXd l = harmonic_degrees(degree);
-  gram.diagonal().array() +=
-      ridge * gram.diagonal().mean() * (l * (l + 1)).square() / std::pow(degree * (degree + 1.0), 2);
+  gram.diagonal().array() += ridge * gram.diagonal().mean() * (l * (l + 1)).square() / std::pow(degree * (degree + 1.0), 2);
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(gram);
   require<Error>(cholesky.info() == Eigen::Success, "fit: the least squares of degree ", degree, " at ", n,
                  " points are singular; give more points or a lower degree");
@@ -230,8 +230,8 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
   detail::check_separable_options(options);
   const detail::TrainingClock clock;
   std::mt19937_64 random(options.seed);
-  const Mat3X points =
-      options.sampler ? options.sampler(options.points, random) : detail::uniform_sphere_points(options.points, random);
+  const Mat3X points = options.sampler ? options.sampler(options.points, random)
+                                       : detail::uniform_sphere_points(options.points, random);
   detail::SeparatedSamples samples = detail::separate(target, points, options);
   SeparableFitSummary summary;
   summary.modes = samples.values.cols();

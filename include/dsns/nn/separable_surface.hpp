@@ -1,8 +1,8 @@
 #pragma once
 /// Moving surfaces as a sum of products: F(s, t) = translation + scale sum_k a_k(t) g_k(s). The few functions of time come
 /// from the data, as its principal components over the frames; the fields g_k are sums of spherical harmonics, of local
-/// functions, and of one network that has all of them as outputs. Space is evaluated once for all times, and at one time the sum over k is taken
-/// in the coefficients before space is evaluated: a SeparableSurface costs what a resting one does.
+/// functions, and of one network that has all of them as outputs. Space is evaluated once for all times, and at one time
+/// the sum over k is taken in the coefficients before space is evaluated: a SeparableSurface costs what a resting one does.
 #include <dsns/core/spline.hpp>
 #include <dsns/nn/neural_surface.hpp>
 #include <dsns/surface/harmonic.hpp>
