@@ -46,6 +46,17 @@ struct SeparableFitOptions {
   std::function<Mat3X(int n, std::mt19937_64& random)> sampler = {};
 };
 
+/// Closed forms alone: no training, so every run gives the same surface. Points are what it is short of: with fewer than
+/// five a local function it fits the samples better than what lies between them.
+inline SeparableFitOptions closed_form_fit() {
+  SeparableFitOptions o;
+  o.points = 100000;
+  o.harmonic_degree = 20;
+  o.radial.functions = 20000;
+  o.width = 0;
+  return o;
+}
+
 struct SeparableFitSummary {
   FitSummary training;
   Index modes = 0;
