@@ -53,6 +53,7 @@ inline SeparableFitOptions closed_form_fit() {
   o.points = 100000;
   o.harmonic_degree = 20;
   o.radial.functions = 20000;
+  o.radial.ridge = 1e-7;
   o.width = 0;
   return o;
 }
