@@ -1,6 +1,7 @@
 #pragma once
-/// Fits a separable surface to a moving one: principal components over time, spherical harmonics by least squares, and a
-/// network that learns what they leave. One pass over the samples costs the points, not the points times the frames.
+/// Fits a separable surface to a moving one: principal components over time, spherical harmonics and local functions
+/// by least squares, and a network that learns what they leave. One pass over the samples costs the points, not the points
+/// times the frames.
 ///
 ///   SeparableFitOptions options;
 ///   options.frames = 60;
@@ -9,6 +10,7 @@
 ///   fit.surface(s, t);                               // a SeparableSurface, in the units of the target
 #include <dsns/core/progress.hpp>
 #include <dsns/nn/fit.hpp>
+#include <dsns/nn/fit_radial.hpp>
 #include <dsns/nn/separable_surface.hpp>
 
 #include <Eigen/Cholesky>
@@ -23,6 +25,8 @@ struct SeparableFitOptions {
   int max_modes = 80;
   int harmonic_degree = 30;  ///< of the least squares; -1: none
   double ridge = 1e-7;       ///< of the least squares, in units of the mean diagonal, at the highest degree
+
+  RadialFitOptions radial = {};  ///< of what the harmonics leave
 
   /// The network on the rest.
   SurfaceEncoding encoding{.harmonic_degree = 20, .time_frequencies = 0};
@@ -44,11 +48,24 @@ struct SeparableFitOptions {
   CheckpointOptions checkpoint = {};  ///< of the network's training; modes and harmonics are computed anew
 };
 
+/// Closed forms alone: no training, so every run gives the same surface. Points are what it is short of: with fewer than
+/// five a local function it fits the samples better than what lies between them.
+inline SeparableFitOptions closed_form_fit() {
+  SeparableFitOptions o;
+  o.points = 100000;
+  o.harmonic_degree = 20;
+  o.radial.functions = 20000;
+  o.radial.ridge = 1e-7;
+  o.width = 0;
+  return o;
+}
+
 struct SeparableFitSummary {
   FitSummary training;
   Index modes = 0;
   double mode_residual = 0;      ///< MSD left by the modes, in units of scale^2
-  double harmonic_residual = 0;  ///< MSD left by the least squares at the samples
+  double harmonic_residual = 0;  ///< MSD left by the harmonics at the samples
+  double radial_residual = 0;    ///< MSD left by the local functions too
 };
 
 struct SeparableFitResult {
@@ -208,6 +225,11 @@ inline FitIdentity identity_of(const SeparableFitOptions& o, std::uint64_t targe
   id.add("most modes", o.max_modes);
   id.add("degree of the harmonics", o.harmonic_degree);
   id.add("ridge", o.ridge);
+  id.add("local functions", o.radial.functions);
+  id.add("neighbours of a local function", o.radial.neighbours);
+  id.add("width of a local function", o.radial.width);
+  id.add("refinement of local functions", o.radial.refinement);
+  id.add("ridge of local functions", o.radial.ridge);
   id.add("width", o.width);
   id.add("blocks", o.blocks);
   id.add("activation", static_cast<double>(o.activation));
@@ -228,7 +250,12 @@ inline void check_separable_options(const SeparableFitOptions& o) {
           o.threads, " threads, width ", o.width, "; give at least 1, 1, 1, 1, 1 and 0");
   require(o.harmonic_degree >= -1 && (o.harmonic_degree < 0 || harmonic_count(o.harmonic_degree) <= o.points),
           "fit: harmonics of degree ", o.harmonic_degree, " from ", o.points, " points; give more points");
-  require(o.harmonic_degree >= 0 || o.width > 0, "fit: neither harmonics nor a network, give one");
+  require(o.radial.functions >= 0 && o.radial.functions <= o.points && o.radial.neighbours > 0 && o.radial.width > 0 &&
+              o.radial.ridge >= 0,
+          "fit: ", o.radial.functions, " local functions from ", o.points, " points, of ", o.radial.neighbours,
+          " neighbours, width ", o.radial.width, ", ridge ", o.radial.ridge, "; give more points and positive numbers");
+  require(o.harmonic_degree >= 0 || o.radial.functions > 0 || o.width > 0,
+          "fit: neither harmonics nor local functions nor a network, give one");
   require(o.encoding.time_features() == 0,
           "fit: a separable surface has an encoding of space alone, set its time to 0");
 }
@@ -255,15 +282,24 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
   summary.modes = samples.values.cols();
   summary.mode_residual = samples.residual;
 
+  constexpr Index shape_rows = 12;  // the mean and the three strongest modes tell parts of the shape apart
+  const Eigen::MatrixXf places = samples.fields.topRows(std::min(shape_rows, samples.fields.rows()));
+  const auto left = [&] {
+    return double(samples.fields.squaredNorm()) / (3 * frames * double(points.cols())) +
+           samples.residual;
+  };
   Eigen::MatrixXd harmonics(0, samples.fields.rows());
   if (options.harmonic_degree >= 0)
     harmonics = detail::take_harmonics(samples.fields, points, options.harmonic_degree, options.ridge, options.threads);
-  summary.harmonic_residual =
-      double(samples.fields.squaredNorm()) / (3 * frames * double(points.cols())) + samples.residual;
+  summary.harmonic_residual = left();
+  RadialSum radial;
+  if (options.radial.functions > 0)
+    radial = detail::take_radial(samples.fields, points, places, options.radial, options.threads);
+  summary.radial_residual = left();
 
   const auto surface = [&](std::optional<Mlp<double>> network) {
     return SeparableSurface(TemporalModes(samples.values, times), harmonics, options.encoding, std::move(network),
-                            samples.ball.translation, samples.ball.scale);
+                            samples.ball.translation, samples.ball.scale, radial);
   };
   std::optional<Mlp<double>> network;
   if (options.width > 0) {

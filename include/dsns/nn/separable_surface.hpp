@@ -1,11 +1,12 @@
 #pragma once
 /// Moving surfaces as a sum of products: F(s, t) = translation + scale sum_k a_k(t) g_k(s). The few functions of time come
-/// from the data, as its principal components over the frames; the fields g_k are sums of spherical harmonics and of one
-/// network that has all of them as outputs. Space is evaluated once for all times, and at one time the sum over k is taken
-/// in the coefficients before space is evaluated: a SeparableSurface costs what a resting one does.
+/// from the data, as its principal components over the frames; the fields g_k are sums of spherical harmonics, of local
+/// functions, and of one network that has all of them as outputs. Space is evaluated once for all times, and at one time
+/// the sum over k is taken in the coefficients before space is evaluated: a SeparableSurface costs what a resting one does.
 #include <dsns/core/spline.hpp>
 #include <dsns/nn/neural_surface.hpp>
 #include <dsns/surface/harmonic.hpp>
+#include <dsns/surface/radial.hpp>
 
 #include <optional>
 #include <utility>
@@ -44,18 +45,25 @@ class BasicSeparableSurface {
  public:
   /// harmonics  coefficients (degree + 1)^2 x 3 M, or without rows
   /// network    of the encoding's features, which has none of time, with 3 M outputs; or none
+  /// radial     local functions with coefficients for 3 M functions, or an empty basis
   /// throws     InvalidArgument where they do not fit
   BasicSeparableSurface(TemporalModes time, Eigen::MatrixXd harmonics, const SurfaceEncoding& encoding,
-                        std::optional<Mlp<T>> network, const Vec3d& translation = Vec3d::Zero(), double scale = 1)
+                        std::optional<Mlp<T>> network, const Vec3d& translation = Vec3d::Zero(), double scale = 1,
+                        RadialSum radial = {})
       : time_(std::move(time)),
         harmonics_(std::move(harmonics)),
         encoding_(encoding),
         network_(std::move(network)),
         translation_(translation),
-        scale_(scale) {
+        scale_(scale),
+        radial_(std::move(radial)) {
     const Index outputs = 3 * time_.modes();
     require(harmonics_.rows() == 0 || harmonics_.cols() == outputs, "SeparableSurface: harmonics of ",
             harmonics_.cols(), " functions for ", time_.modes(), " modes, give three a mode");
+    require(radial_.basis.size() == radial_.coefficients.rows() &&
+                (radial_.basis.size() == 0 || radial_.coefficients.cols() == outputs),
+            "SeparableSurface: ", radial_.basis.size(), " local functions with ", radial_.coefficients.rows(), " x ",
+            radial_.coefficients.cols(), " coefficients for ", time_.modes(), " modes, give three a mode");
     require(!network_ || (network_->shape().outputs == outputs && network_->shape().inputs == encoding.features() &&
                           encoding.time_features() == 0),
             "SeparableSurface: a network of ", network_ ? network_->shape().outputs : 0, " outputs for ", time_.modes(),
@@ -66,6 +74,7 @@ class BasicSeparableSurface {
   const Eigen::MatrixXd& harmonics() const { return harmonics_; }
   const SurfaceEncoding& encoding() const { return encoding_; }
   const std::optional<Mlp<T>>& network() const { return network_; }
+  const RadialSum& radial() const { return radial_; }
   const Vec3d& translation() const { return translation_; }
   double scale() const { return scale_; }
 
@@ -94,42 +103,49 @@ class BasicSeparableSurface {
   /// sum_k a_k g_k for given a: a resting surface.
   struct Combined {
     std::optional<HarmonicSurface> harmonic;
+    const RadialBasis* basis;
+    Eigen::MatrixX3d radial;  // of the basis, or without rows
     std::optional<BasicNeuralSurface<T>> network;
 
     Mat3X positions(const Mat3X& s) const {
       Mat3X out = Mat3X::Zero(3, s.cols());
       if (harmonic) out += harmonic->positions(s);
+      if (radial.rows() > 0) out += radial_sum<3>(*basis, radial, s);
       if (network) out += network->positions(s, 0);
       return out;
     }
     SurfaceTangents tangents(const ChartBatch& c) const {
       SurfaceTangents out(c.size());
       out.f.setZero(), out.fu.setZero(), out.fv.setZero();
-      const auto add = [&](const SurfaceTangents& j) { out.f += j.f, out.fu += j.fu, out.fv += j.fv; };
+      const auto add = [&](const auto& j) { out.f += j.f, out.fu += j.fu, out.fv += j.fv; };
       if (harmonic) add(dsns::tangents(*harmonic, c));
+      if (radial.rows() > 0) add(radial_sum_tangents<3>(*basis, radial, c));
       if (network) add(network->tangents(c, 0));
       return out;
     }
     SurfaceJets jets(const ChartBatch& c) const {
       SurfaceJets out(c.size());
       for (Mat3X* field : {&out.f, &out.fu, &out.fv, &out.fuu, &out.fuv, &out.fvv}) field->setZero();
-      const auto add = [&](const SurfaceJets& j) {
+      const auto add = [&](const auto& j) {
         out.f += j.f, out.fu += j.fu, out.fv += j.fv;
         out.fuu += j.fuu, out.fuv += j.fuv, out.fvv += j.fvv;
       };
       if (harmonic) add(dsns::jets(*harmonic, c));
+      if (radial.rows() > 0) add(radial_sum_jets<3>(*basis, radial, c));
       if (network) add(network->jets(c, 0));
       return out;
     }
   };
 
   Combined combined(const Eigen::VectorXd& a) const {
-    Combined out;
-    if (harmonics_.rows() > 0) {
-      Eigen::MatrixX3d c = Eigen::MatrixX3d::Zero(harmonics_.rows(), 3);
-      for (Index k = 0; k < a.size(); ++k) c += (scale_ * a[k]) * harmonics_.middleCols(3 * k, 3);
-      out.harmonic.emplace(std::move(c));
-    }
+    const auto contracted = [&](const Eigen::MatrixXd& coefficients) {
+      Eigen::MatrixX3d c = Eigen::MatrixX3d::Zero(coefficients.rows(), 3);
+      if (c.rows() > 0)
+        for (Index k = 0; k < a.size(); ++k) c += (scale_ * a[k]) * coefficients.middleCols(3 * k, 3);
+      return c;
+    };
+    Combined out{{}, &radial_.basis, contracted(radial_.coefficients), {}};
+    if (harmonics_.rows() > 0) out.harmonic.emplace(contracted(harmonics_));
     if (network_) {
       MlpShape shape = network_->shape();
       const int last = shape.layers() - 1, width = shape.cols(last);
@@ -151,6 +167,7 @@ class BasicSeparableSurface {
   std::optional<Mlp<T>> network_;
   Vec3d translation_;
   double scale_;
+  RadialSum radial_;
 };
 
 using SeparableSurface = BasicSeparableSurface<double>;

@@ -104,6 +104,22 @@ inline Eigen::MatrixXd harmonics_from(const Archive& archive) {
   return harmonics;
 }
 
+inline RadialSum radial_from(const Archive& archive) {
+  if (!archive.contains("radial.centres")) return {};
+  const auto& centres = archive.get<Eigen::MatrixXd>("radial.centres");
+  const auto& metrics = archive.get<Eigen::MatrixXd>("radial.metrics", 9, centres.cols());
+  const auto& coefficients = archive.get<Eigen::MatrixXd>("radial.coefficients");
+  require<FileError>(centres.rows() == 3 && centres.allFinite() && metrics.allFinite() && coefficients.allFinite() &&
+                         coefficients.rows() == centres.cols(),
+                     archive.name(), ": ", centres.cols(), " local functions with ", coefficients.rows(),
+                     " coefficients, or not finite");
+  try {
+    return {RadialBasis(centres, metrics), coefficients};
+  } catch (const InvalidArgument& unusable) {
+    throw FileError(archive.name() + ": " + unusable.what());
+  }
+}
+
 template <class S>
 struct SurfaceReader;
 template <class T>
@@ -123,7 +139,8 @@ struct SurfaceReader<BasicSeparableSurface<T>> {
     const Placement place = placement_from(archive);
     std::optional<Mlp<T>> network;
     if (archive.contains("network.parameters")) network = network_from<T>(archive, encoding.features());
-    return {modes_from(archive), harmonics_from(archive), encoding, std::move(network), place.translation, place.scale};
+    return {modes_from(archive), harmonics_from(archive), encoding,   std::move(network),
+            place.translation,   place.scale,             radial_from(archive)};
   }
 };
 
@@ -149,6 +166,11 @@ void store_surface(Archive& archive, const BasicSeparableSurface<T>& surface) {
   const std::vector<double>& times = surface.time().times();
   archive.set("times", Eigen::MatrixXd(Eigen::MatrixXd::Map(times.data(), Index(times.size()), 1)));
   archive.set("harmonics", surface.harmonics());
+  if (const RadialSum& radial = surface.radial(); radial.basis.size() > 0) {
+    archive.set("radial.centres", Eigen::MatrixXd(radial.basis.centres()));
+    archive.set("radial.metrics", Eigen::MatrixXd(radial.basis.metrics()));
+    archive.set("radial.coefficients", radial.coefficients);
+  }
   detail::store_encoding(archive, surface.encoding());
   if (surface.network()) detail::store_network(archive, *surface.network());
   detail::store_placement(archive, surface.translation(), surface.scale());
