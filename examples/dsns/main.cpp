@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
     sub->callback([&, run, name] {
       check_output(settings.json, "");
       if (name != "demo") check_output(out, name == "fit" && dsns::lower_extension(out) == ".dsns" ? ".dsns" : ".glb");
-      check_output(settings.checkpoint, "");
+      check_output(settings.checkpoint, ".dsns");
       check_output(overview, ".glb");
       check_own_mesh(own, sources.empty() ? "" : sources.front());
       run();
@@ -182,7 +182,7 @@ int main(int argc, char** argv) {
   fit_command->add_option("FILE", sources, "the animation")->required()->expected(1);
   fit_command->add_option("-o,--output", out, "write the fitted animation to this GLB, or the surface to this .dsns");
   CLI::Option* checkpoint = fit_command->add_option("--checkpoint", settings.checkpoint,
-                                                    "keep what the fit needs to go on in this file, every ten seconds");
+                                                    "keep what the fit needs to go on in this .dsns file, every ten seconds");
   fit_command->add_flag("--resume", settings.resume, "go on from the checkpoint, where there is one")
       ->needs(checkpoint);
   add_fit(fit_command, settings);
