@@ -181,7 +181,7 @@ int main(int argc, char** argv) {
       check_output(settings.json, "");
       if (name != "demo" && name != "representation")
         check_output(out, name == "fit" && dsns::lower_extension(out) == ".dsns" ? ".dsns" : ".glb");
-      check_output(settings.checkpoint, "");
+      check_output(settings.checkpoint, ".dsns");
       check_output(overview, ".glb");
       check_own_mesh(own, sources.empty() ? "" : sources.front());
       run();
@@ -217,8 +217,8 @@ int main(int argc, char** argv) {
   });
   fit_command->add_option("FILE", sources, "the animation")->required()->expected(1);
   fit_command->add_option("-o,--output", out, "write the fitted animation to this GLB, or the surface to this .dsns");
-  CLI::Option* checkpoint = fit_command->add_option("--checkpoint", settings.checkpoint,
-                                                    "keep what the fit needs to go on in this file, every ten seconds");
+  CLI::Option* checkpoint = fit_command->add_option(
+      "--checkpoint", settings.checkpoint, "keep what the fit needs to go on in this .dsns file, every ten seconds");
   fit_command->add_flag("--resume", settings.resume, "go on from the checkpoint, where there is one")
       ->needs(checkpoint);
   about_fits(fit_command, settings);
