@@ -11,6 +11,7 @@ CheckpointFile::CheckpointFile(const Settings& settings) : path_(settings.checkp
 CheckpointOptions CheckpointFile::options() const {
   CheckpointOptions options;
   if (path_.empty()) return options;
+  options.every = 1;
   options.write = [path = path_](const Archive& archive) { write_archive(path, archive); };
   options.resume = stopped_ ? &*stopped_ : nullptr;
   return options;

@@ -218,7 +218,7 @@ int main(int argc, char** argv) {
   fit_command->add_option("FILE", sources, "the animation")->required()->expected(1);
   fit_command->add_option("-o,--output", out, "write the fitted animation to this GLB, or the surface to this .dsns");
   CLI::Option* checkpoint = fit_command->add_option(
-      "--checkpoint", settings.checkpoint, "keep what the fit needs to go on in this .dsns file, every ten seconds");
+      "--checkpoint", settings.checkpoint, "keep what the fit needs to go on in this .dsns file, every second");
   fit_command->add_flag("--resume", settings.resume, "go on from the checkpoint, where there is one")
       ->needs(checkpoint);
   about_fits(fit_command, settings);
