@@ -164,15 +164,17 @@ TEST_CASE("training archive: seconds that were spent are not given again", "[nn]
     if (a.integer("training.steps") == 20) throw Enough();
   };
   CHECK_THROWS_AS(fit(o), Enough);
-  CHECK(saved.number("training.budget") == 1e5);
+  const double budget = saved.number("training.budget");  // what the preparation left
+  CHECK(budget <= 1e5);
+  CHECK(budget > 1e5 - 1000);
   CHECK(saved.number("training.seconds") > 0);
   CHECK(saved.number("training.seconds") < 1e4);
-  saved.set("training.seconds", 1e5 - 0.02);
+  saved.set("training.seconds", budget - 0.02);
   o.checkpoint = {.resume = &saved};
   const FitSummary rest = fit(o).summary;
   CHECK(rest.stopped == FitStop::seconds);
   CHECK(rest.steps > 20);
-  saved.set("training.seconds", 1e5);
+  saved.set("training.seconds", budget);
   CHECK(fit(o).summary.steps == 20);
 }
 
