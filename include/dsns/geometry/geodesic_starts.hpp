@@ -45,7 +45,8 @@ SpherePath edge_path(const S& surface, const Vec3d& a, const Vec3d& b, int level
     for (int k = 0; k < 3; ++k) neighbours[std::size_t(sphere.faces(k, f))].push_back(sphere.faces((k + 1) % 3, f));
   const auto nearest = [&](const Vec3d& s) {
     Index at = 0;
-    (s.transpose() * sphere.vertices).maxCoeff(&at);
+    const Eigen::RowVectorXd nearness = s.transpose() * sphere.vertices;
+    nearness.maxCoeff(&at);
     return static_cast<int>(at);
   };
   const int first = nearest(a), last = nearest(b);
