@@ -13,7 +13,10 @@
 #include <dsns/surface/sampled.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <iostream>
+#include <vector>
 
 using namespace dsns;
 
@@ -47,8 +50,12 @@ int main(int argc, char** argv) try {
   const HarmonicSurface smooth = project_on_harmonics(at_time(mesh, 0), 40).smoothed(40, 0.5e-3);
   const Eigen::VectorXd h = curvature(smooth, sphere).mean;
 
+  std::vector<double> sizes(h.data(), h.data() + h.size());
+  for (double& x : sizes) x = std::abs(x);
+  const auto high = sizes.begin() + std::ptrdiff_t(sizes.size()) * 9 / 10;
+  std::nth_element(sizes.begin(), high, sizes.end());  // full colour for a tenth of the vertices: limbs bend most
   Mat3X colors(3, sphere.cols());
-  for (Index v = 0; v < sphere.cols(); ++v) colors.col(v) = color(h[v], 10);
+  for (Index v = 0; v < sphere.cols(); ++v) colors.col(v) = color(h[v], *high);
   std::cout << "mean curvature from " << h.minCoeff() << " to " << h.maxCoeff() << " at " << sphere.cols()
             << " vertices of a surface of area 1\n";
   if (argc > 2) {
