@@ -62,7 +62,7 @@ TEST_CASE("the ends of an ellipsoid's longest axis are half the smallest ellipse
 
 TEST_CASE("distances are symmetric and satisfy the triangle inequality", "[law]") {
   const Mat3X s = fibonacci_sphere(3).points;
-  const auto check = [&](const char* name, const auto& surface) {
+  const auto check = [&](const std::string& name, const auto& surface) {
     INFO(name);
     Mat3 d = Mat3::Zero();
     for (Index i = 0; i < 3; ++i)

@@ -89,9 +89,9 @@ TEST_CASE("Joachimsthal's integral is constant on ellipsoids", "[geometry]") {
 TEST_CASE("geodesics have unit speed, turn only with the surface, and come back", "[law]") {
   GeodesicOptions options;
   options.samples = 9;
-  constexpr double length = 0.16, h = length / 8;
+  constexpr double length = 0.08, h = length / 8;
   const Mat3X s = test::sphere_points(2);
-  test::visit_smooth_surfaces([&](const char* name, const auto& surface) {
+  test::visit_smooth_surfaces([&](const std::string& name, const auto& surface) {
     INFO(name);
     for (const Index i : {0, 3, 6, 8, 9}) {
       const Geodesic g = geodesic(surface, s.col(i), Vec3d(0.5, 0.7, 0.3), length, options);
@@ -115,7 +115,7 @@ TEST_CASE("geodesics have unit speed, turn only with the surface, and come back"
 TEST_CASE("the Jacobi field is the distance of a neighbour, by angle", "[law]") {
   GeodesicOptions options;
   options.samples = 5;
-  const auto check = [&](const char* name, const auto& surface) {
+  const auto check = [&](const std::string& name, const auto& surface) {
     INFO(name);
     const Vec3d s = Vec3d(0.3, -0.5, 0.8).normalized();
     const ChartBatch c = charts_at(s);

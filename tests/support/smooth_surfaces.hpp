@@ -5,6 +5,8 @@
 #include <dsns/surface/analytic.hpp>
 #include <dsns/surface/harmonic.hpp>
 
+#include "support/surfaces.hpp"
+
 namespace dsns::test {
 
 inline LimbedBody two_limbs() {
@@ -67,8 +69,7 @@ inline HarmonicSurface bumpy_harmonics() {
 /// Calls visit(name, surface) for surfaces that take any scalar.
 template <class Visit>
 void visit_formulas(const Visit& visit) {
-  visit("round sphere", Ellipsoid{2, 2, 2});
-  visit("ellipsoid", Ellipsoid{1, 1.5, 0.7});
+  for_each_surface(visit);
   visit("two limbs", StillBody{});
   visit("harmonics", bumpy_harmonics());
   visit("network", NeuralBody{});

