@@ -84,9 +84,7 @@ void network(const char* name, const SurfaceEncoding& encoding, int width, int b
 void harmonic_basis(int degree) {
   const ChartBatch c = charts_at(fibonacci_sphere(1024).points);
   const std::string name = "harmonics_" + std::to_string(degree);
-  const auto reference = [&](Index first) {
-    keep(reference::harmonic_jets(c.s.middleCols(first, 32), degree).y);
-  };
+  const auto reference = [&](Index first) { keep(reference::harmonic_jets(c.s.middleCols(first, 32), degree).y); };
   const auto tiles = [&](const auto& body) {
     return [&] {
       for (Index first = 0; first < c.size(); first += 32) body(first);

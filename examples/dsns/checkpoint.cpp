@@ -40,7 +40,9 @@ void inspect_surface(const std::filesystem::path& path, Report& report) {
     return found == archive.arrays().end() ? Index(0)
                                            : std::visit([](const auto& v) { return Index(v.size()); }, found->second);
   };
-  report.figure("parameters", "parameters", entries("network.parameters") + entries("harmonics") + entries("modes"));
+  report.figure(
+      "parameters", "parameters",
+      entries("network.parameters") + entries("harmonics") + entries("modes") + entries("radial.coefficients"));
   report.figure("scale", "radius of the ball that holds it", archive.number("scale"));
   if (archive.contains("motion.duration"))
     report.figure("duration", "duration, seconds", archive.number("motion.duration"));

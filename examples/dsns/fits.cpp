@@ -3,7 +3,7 @@
 #include "checkpoint.hpp"
 
 #include <dsns/mesh/sampling.hpp>
-#include <dsns/nn/fit_separable.hpp>
+#include <dsns/nn/closed_form.hpp>
 #include <dsns/surface/sampled.hpp>
 
 #include <chrono>
@@ -44,6 +44,16 @@ Options told(Options options, const MeshSequence& sequence, const Mat3X& sphere,
   return options;
 }
 
+/// Twice the functions, where an error or a time says when it is enough.
+SeparableFitOptions fast_options(const Settings& settings) {
+  SeparableFitOptions options = closed_form_fit();
+  if (settings.seconds > 0 || settings.target_msd > 0) {
+    options.radial.functions *= 2;
+    options.points *= 2;
+  }
+  return options;
+}
+
 FitOptions network_options(Preset preset) {
   if (preset == Preset::paper) return paper_fit();
   FitOptions options;
@@ -59,6 +69,8 @@ std::string word(FitStop stop) {
       return "seconds";
     case FitStop::target_msd:
       return "target";
+    case FitStop::functions:
+      return "functions";
     case FitStop::steps:
       break;
   }
@@ -122,10 +134,11 @@ Fitted fit_frames(const Body& body, const std::vector<int>& frames, const Settin
   // The fits' own unit is the ball of their samples, which is all but this one.
   const CheckpointFile checkpoint(settings);
   if (settings.preset == Preset::fast) {
-    const SeparableFitResult fit = fit_separable_surface(
-        reference, told(SeparableFitOptions{}, sequence, sphere, times, checkpoint, settings), progress);
+    const SeparableFitResult fit = fit_closed_form(
+        reference, told(fast_options(settings), sequence, sphere, times, checkpoint, settings), progress);
     const double square = std::pow(fit.surface.scale() / unit, 2);
-    f.separable = {fit.summary.modes, square * fit.summary.mode_residual, square * fit.summary.harmonic_residual};
+    f.separable = {fit.summary.modes, fit.summary.functions, square * fit.summary.mode_residual,
+                   square * fit.summary.harmonic_residual, square * fit.summary.radial_residual};
     return finished(fit.surface, fit.summary.training);
   }
   const FitResult fit = fit_neural_surface(
@@ -155,10 +168,13 @@ void report_fit(const FitFigures& f, Report& report) {
   if (f.separable) {
     report.figure("modes", "temporal modes", f.separable->modes);
     report.figure("mode_residual", "mean squared error they leave", f.separable->mode_residual);
-    report.figure("harmonic_residual", "and with the harmonics", f.separable->harmonic_residual);
+    report.figure("harmonic_residual", "and with the harmonics, at the samples", f.separable->harmonic_residual);
+    report.figure("functions", "local functions", f.separable->functions);
+    report.figure("radial_residual", "and with these", f.separable->radial_residual);
+  } else {
+    report.figure("parameters", "parameters of the network", f.parameters);
+    report.figure("steps", "steps", f.steps);
   }
-  report.figure("parameters", "parameters of the network", f.parameters);
-  report.figure("steps", "steps", f.steps);
   report.figure("stop", "ended by", f.stop);
   report.figure("wall_seconds", "seconds of the fit", f.wall_seconds);
   report.figure("cpu_seconds", "CPU-seconds", f.cpu_seconds);

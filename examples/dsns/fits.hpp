@@ -18,8 +18,8 @@ struct FitFigures {
   SampledSurfaceError error;  ///< on points of the faces that the fit never saw
   int frames = 0;
   struct Separable {
-    Index modes;
-    double mode_residual, harmonic_residual;
+    Index modes, functions;
+    double mode_residual, harmonic_residual, radial_residual;
   };
   std::optional<Separable> separable;  ///< of the preset `fast`
   Index parameters = 0;                ///< of the network
@@ -37,7 +37,7 @@ struct Fitted {
 std::vector<int> spread_frames(int of, int count);
 
 /// Fits some frames of a body; `error` is against the motion through these frames, at their times.
-///   fast     temporal modes, harmonics by least squares, a network on the rest
+///   fast     temporal modes, harmonics and local functions by least squares
 ///   general  one network of point and time
 ///   paper    the D-SNS paper's network and training
 Fitted fit_frames(const Body& body, const std::vector<int>& frames, const Settings& settings, const Progress& progress);

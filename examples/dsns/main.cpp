@@ -56,11 +56,11 @@ void add_choice(CLI::App* command, const std::string& name, E& value, const std:
 }
 
 void add_fit(CLI::App* command, Settings& settings) {
-  add_choice(
-      command, "--preset", settings.preset,
-      {{"fast", Preset::fast}, {"general", Preset::general}, {"paper", Preset::paper}},
-      "fast: temporal modes, harmonics, a network on the rest; general: one network of point and time; paper: that of "
-      "the D-SNS paper, which takes weeks");
+  add_choice(command, "--preset", settings.preset,
+             {{"fast", Preset::fast}, {"general", Preset::general}, {"paper", Preset::paper}},
+             "fast: temporal modes, harmonics and local functions, closed forms; general: one network of point and "
+             "time; paper: that of "
+             "the D-SNS paper, which takes weeks");
   command->add_option("--steps", settings.steps, "training steps of a network (0: the preset's)")
       ->check(CLI::Range(0, 10000000));
   command->add_option("--seconds", settings.seconds, "wall time of a fit, at most (0: no limit)")

@@ -5,9 +5,9 @@
 #include <dsns/geometry/geodesic_distance.hpp>
 #include <dsns/geometry/integrals.hpp>
 #include <dsns/geometry/mean_curvature_flow.hpp>
-#include <dsns/geometry/spectrum.hpp>
 #include <dsns/geometry/motion.hpp>
 #include <dsns/geometry/operators.hpp>
+#include <dsns/geometry/spectrum.hpp>
 #include <dsns/io/archive_file.hpp>
 #include <dsns/io/frames.hpp>
 #include <dsns/io/state_dict_file.hpp>
@@ -19,7 +19,7 @@
 #include <dsns/mesh/sphere_mask.hpp>
 #include <dsns/mesh/sphere_mesh.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
-#include <dsns/nn/fit_separable.hpp>
+#include <dsns/nn/closed_form.hpp>
 #include <dsns/nn/state_dict.hpp>
 #include <dsns/nn/surface_archive.hpp>
 #include <dsns/stats/moving_mean.hpp>

@@ -1,7 +1,7 @@
 #include "catch.hpp"
 
-#include <dsns/io/gltf_reader.hpp>
 #include <dsns/io/frames.hpp>
+#include <dsns/io/gltf_reader.hpp>
 #include <dsns/mesh/repair.hpp>
 
 #include <filesystem>

@@ -66,7 +66,7 @@ class MatrixTape {
    private:
     friend class MatrixTape;
     Pullback pullback = nullptr;
-    bool active = false;      // depends on a parameter
+    bool active = false;          // depends on a parameter
     std::size_t reached = never;  // the sweep in which adjoint got what it holds
     const T* parameter = nullptr;
     T* gradient = nullptr;

@@ -36,8 +36,7 @@ void activate(Activation activation, Eigen::Ref<Eigen::ArrayX<T>> y, Eigen::Ref<
   if constexpr (std::is_same_v<T, float>) {
     if (activation == Activation::softplus)
       return detail::for_lanes(y.size(), y.data(), slope.data(), detail::SoftplusLanes{});
-    if (activation == Activation::silu)
-      return detail::for_lanes(y.size(), y.data(), slope.data(), detail::SiluLanes{});
+    if (activation == Activation::silu) return detail::for_lanes(y.size(), y.data(), slope.data(), detail::SiluLanes{});
   }
   switch (activation) {
     case Activation::softplus:

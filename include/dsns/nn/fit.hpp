@@ -54,7 +54,12 @@ struct FitOptions {
   CheckpointOptions checkpoint = {};
 };
 
-enum class FitStop { steps, seconds, target_msd };
+enum class FitStop {
+  steps,
+  seconds,
+  target_msd,
+  functions,  ///< a closed form has as many as it may
+};
 
 struct FitSummary {
   int steps = 0;

@@ -45,20 +45,8 @@ struct SeparableFitOptions {
   int threads = 1;  ///< the result does not depend on it
   /// Where points are drawn: n unit vectors, 3 x n. Empty: uniformly on the sphere.
   std::function<Mat3X(int n, std::mt19937_64& random)> sampler = {};
-  CheckpointOptions checkpoint = {};  ///< of the network's training; modes and harmonics are computed anew
+  CheckpointOptions checkpoint = {};  ///< of the network's training; all else is computed anew
 };
-
-/// Closed forms alone: no training, so every run gives the same surface. Points are what it is short of: with fewer than
-/// five a local function it fits the samples better than what lies between them.
-inline SeparableFitOptions closed_form_fit() {
-  SeparableFitOptions o;
-  o.points = 100000;
-  o.harmonic_degree = 20;
-  o.radial.functions = 20000;
-  o.radial.ridge = 1e-7;
-  o.width = 0;
-  return o;
-}
 
 struct SeparableFitSummary {
   FitSummary training;
@@ -66,6 +54,7 @@ struct SeparableFitSummary {
   double mode_residual = 0;      ///< MSD left by the modes, in units of scale^2
   double harmonic_residual = 0;  ///< MSD left by the harmonics at the samples
   double radial_residual = 0;    ///< MSD left by the local functions too
+  Index functions = 0;           ///< local ones
 };
 
 struct SeparableFitResult {
@@ -285,8 +274,7 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
   constexpr Index shape_rows = 12;  // the mean and the three strongest modes tell parts of the shape apart
   const Eigen::MatrixXf places = samples.fields.topRows(std::min(shape_rows, samples.fields.rows()));
   const auto left = [&] {
-    return double(samples.fields.squaredNorm()) / (3 * frames * double(points.cols())) +
-           samples.residual;
+    return double(samples.fields.squaredNorm()) / (3 * frames * double(points.cols())) + samples.residual;
   };
   Eigen::MatrixXd harmonics(0, samples.fields.rows());
   if (options.harmonic_degree >= 0)
@@ -296,6 +284,7 @@ SeparableFitResult fit_separable_surface(const F& target, const SeparableFitOpti
   if (options.radial.functions > 0)
     radial = detail::take_radial(samples.fields, points, places, options.radial, options.threads);
   summary.radial_residual = left();
+  summary.functions = radial.basis.size();
 
   const auto surface = [&](std::optional<Mlp<double>> network) {
     return SeparableSurface(TemporalModes(samples.values, times), harmonics, options.encoding, std::move(network),

@@ -139,8 +139,8 @@ struct SurfaceReader<BasicSeparableSurface<T>> {
     const Placement place = placement_from(archive);
     std::optional<Mlp<T>> network;
     if (archive.contains("network.parameters")) network = network_from<T>(archive, encoding.features());
-    return {modes_from(archive), harmonics_from(archive), encoding,   std::move(network),
-            place.translation,   place.scale,             radial_from(archive)};
+    return {modes_from(archive), harmonics_from(archive), encoding, std::move(network), place.translation,
+            place.scale,         radial_from(archive)};
   }
 };
 
