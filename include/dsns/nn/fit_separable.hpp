@@ -42,7 +42,7 @@ struct SeparableFitOptions {
   double learning_rate = 1e-2;  ///< at its highest; rises over the first hundredth and falls to 0 along half a cosine
   OptimizerOptions optimizer = {};
   std::uint64_t seed = 0;
-  int threads = 1;  ///< the result does not depend on it
+  int threads = 1;  ///< the result does not depend on it; with more than one the target is asked from several at once
   /// Where points are drawn: n unit vectors, 3 x n. Empty: uniformly on the sphere.
   std::function<Mat3X(int n, std::mt19937_64& random)> sampler = {};
   CheckpointOptions checkpoint = {};  ///< of the network's training; all else is computed anew
@@ -79,11 +79,14 @@ SeparatedSamples separate(const F& target, const Mat3X& points, const std::vecto
   const Index n = points.cols(), frames = Index(times.size());
   Eigen::MatrixXf all(3 * n, frames);
   SeparatedSamples out;
-  visit_positions(target, points, times, [&](Index k, const Mat3X& p) {
-    require(p.allFinite(), "fit: the target is not finite at t = ", times[std::size_t(k)]);
-    if (k == 0) out.ball.translation = p.rowwise().mean();  // near the final one, so that single precision suffices
-    all.col(k) = (p.colwise() - out.ball.translation).reshaped().template cast<float>();
-  });
+  visit_positions(
+      target, points, times,
+      [&](Index k, const Mat3X& p) {
+        require(p.allFinite(), "fit: the target is not finite at t = ", times[std::size_t(k)]);
+        if (k == 0) out.ball.translation = p.rowwise().mean();  // near the final one, so that single precision suffices
+        all.col(k) = (p.colwise() - out.ball.translation).reshaped().template cast<float>();
+      },
+      options.threads);
   Vec3d shift = Vec3d::Zero();
   for (Index k = 0; k < frames; ++k)
     shift += all.col(k).reshaped(3, n).template cast<double>().rowwise().mean() / double(frames);
@@ -99,12 +102,16 @@ SeparatedSamples separate(const F& target, const Mat3X& points, const std::vecto
 
   const Eigen::VectorXf mean = all.rowwise().mean();
   all.colwise() -= mean;
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(frames, frames);
   constexpr Index tile = 4096;
-  for (Index first = 0; first < all.rows(); first += tile) {
-    const Eigen::MatrixXd part = all.middleRows(first, std::min(tile, all.rows() - first)).template cast<double>();
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
-  }
+  constexpr int groups = 2;  // summed in one order whatever the threads do
+  std::vector<Eigen::MatrixXd> grams(groups, Eigen::MatrixXd::Zero(frames, frames));
+  parallel_for(groups, options.threads, [&](int g) {
+    for (Index first = g * tile; first < all.rows(); first += groups * tile) {
+      const Eigen::MatrixXd part = all.middleRows(first, std::min(tile, all.rows() - first)).template cast<double>();
+      grams[std::size_t(g)].template selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
+    }
+  });
+  const Eigen::MatrixXd gram = grams[0] + grams[1];
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
   const double samples = 3 * double(n) * double(frames);
   double left = solver.eigenvalues().cwiseMax(0).sum();
@@ -117,10 +124,13 @@ SeparatedSamples separate(const F& target, const Mat3X& points, const std::vecto
   out.values.rightCols(modes) = solver.eigenvectors().rightCols(modes).rowwise().reverse();
   out.fields.resize(3 * (modes + 1), n);
   const Eigen::MatrixXf directions = out.values.rightCols(modes).template cast<float>();
-  for (Index i = 0; i < n; ++i) {
-    out.fields.col(i).head<3>() = std::sqrt(float(frames)) * mean.segment<3>(3 * i);
-    out.fields.col(i).tail(3 * modes).reshaped(3, modes).noalias() = all.middleRows<3>(3 * i) * directions;
-  }
+  constexpr int parts = 64;
+  parallel_for(parts, options.threads, [&](int part) {
+    for (Index i = part; i < n; i += parts) {
+      out.fields.col(i).template head<3>() = std::sqrt(float(frames)) * mean.segment<3>(3 * i);
+      out.fields.col(i).tail(3 * modes).reshaped(3, modes).noalias() = all.middleRows<3>(3 * i) * directions;
+    }
+  });
   return out;
 }
 

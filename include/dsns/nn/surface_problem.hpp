@@ -1,6 +1,7 @@
 #pragma once
 /// What a network learns a moving surface from: points of the sphere and times with the surface's position there, and where
 /// the loss asks for them its tangents and normals.
+#include <dsns/core/parallel.hpp>
 #include <dsns/nn/encodings.hpp>
 #include <dsns/nn/losses.hpp>
 #include <dsns/nn/trainer.hpp>
@@ -39,14 +40,22 @@ concept LocatesPoints = requires(const F& f, const Mat3X& s, const ChartBatch& c
   { f.jets(f.locate(s), c, 0.0) } -> std::same_as<SurfaceJets>;
 };
 
-/// The target's positions at all points, or its tangents at all charts, for each time in turn.
+/// The target's positions at all points, or its tangents at all charts, for each time.
+/// With several threads the first time comes first and the others in any order, from any of them.
 template <class F, class Visit>
-void visit_positions(const F& target, const Mat3X& s, const std::vector<double>& times, const Visit& visit) {
+void visit_positions(const F& target, const Mat3X& s, const std::vector<double>& times, const Visit& visit,
+                     int threads = 1) {
+  const auto all = [&](const auto& positions_at) {
+    if (times.empty()) return;
+    visit(Index(0), positions_at(times[0]));
+    parallel_for(int(times.size()) - 1, threads,
+                 [&](int k) { visit(Index(k) + 1, positions_at(times[std::size_t(k) + 1])); });
+  };
   if constexpr (LocatesPoints<F>) {
     const auto places = target.locate(s);
-    for (std::size_t k = 0; k < times.size(); ++k) visit(Index(k), target.positions(places, times[k]));
+    all([&](double t) -> Mat3X { return target.positions(places, t); });
   } else {
-    for (std::size_t k = 0; k < times.size(); ++k) visit(Index(k), positions(target, s, times[k]));
+    all([&](double t) -> Mat3X { return positions(target, s, t); });
   }
 }
 template <class F, class Visit>
