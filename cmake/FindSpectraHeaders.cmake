@@ -1,0 +1,10 @@
+# SpectraHeaders::SpectraHeaders: Spectra from version 1 on, which is headers alone and whose own package not every system ships.
+find_path(Spectra_INCLUDE_DIR Spectra/SymEigsShiftSolver.h)
+find_path(Spectra_VERSION_DIR Spectra/Util/Version.h HINTS "${Spectra_INCLUDE_DIR}")
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(SpectraHeaders REQUIRED_VARS Spectra_INCLUDE_DIR Spectra_VERSION_DIR)
+mark_as_advanced(Spectra_INCLUDE_DIR Spectra_VERSION_DIR)
+if(SpectraHeaders_FOUND AND NOT TARGET SpectraHeaders::SpectraHeaders)
+  add_library(SpectraHeaders::SpectraHeaders INTERFACE IMPORTED)
+  set_target_properties(SpectraHeaders::SpectraHeaders PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${Spectra_INCLUDE_DIR}")
+endif()
