@@ -15,11 +15,12 @@ namespace dsns {
 
 namespace detail {
 
-/// Barycentric coordinates of the triangle's point nearest to p.
+/// Barycentric coordinates of the triangle's point nearest to p, in a space of any dimension.
 /// source   Ericson 2005, section 5.1.5
-inline Vec3d nearest_in_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+template <class Vector>
+Vec3d nearest_in_triangle(const Vector& p, const Vector& a, const Vector& b, const Vector& c) {
   const auto share = [](double x, double y) { return x + y > 0 ? x / (x + y) : 0.0; };
-  const Vec3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const Vector ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp), d6 = ac.dot(cp);
   if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
   if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
