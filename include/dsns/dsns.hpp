@@ -1,5 +1,6 @@
 #pragma once
-/// Everything that needs Eigen alone. glTF is apart: <dsns/io/gltf.hpp> needs tinygltf.
+/// Everything that needs Eigen alone. Apart are <dsns/io/gltf.hpp>, which needs tinygltf, and
+/// <dsns/matching/correspond.hpp>, which needs Spectra.
 #include <dsns/elastic/geodesic.hpp>
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/geometry/geodesic_distance.hpp>
@@ -11,6 +12,10 @@
 #include <dsns/io/archive_file.hpp>
 #include <dsns/io/frames.hpp>
 #include <dsns/io/state_dict_file.hpp>
+#include <dsns/matching/descriptor_starts.hpp>
+#include <dsns/matching/descriptors.hpp>
+#include <dsns/matching/map_orientation.hpp>
+#include <dsns/matching/spectral_targets.hpp>
 #include <dsns/matching/target_fit.hpp>
 #include <dsns/mesh/area_ratios.hpp>
 #include <dsns/mesh/join_pieces.hpp>
