@@ -21,7 +21,9 @@ template <class Vector>
 Vec3d nearest_in_triangle(const Vector& p, const Vector& a, const Vector& b, const Vector& c) {
   const auto share = [](double x, double y) { return x + y > 0 ? x / (x + y) : 0.0; };
   const Vector ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp), d6 = ac.dot(cp);
+  const auto dot = [](const Vector& x, const Vector& y) { return double(x.dot(y)); };
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+               d6 = dot(ac, cp);
   if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
   if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
   if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
