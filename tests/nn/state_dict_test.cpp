@@ -1,6 +1,7 @@
 #include "catch.hpp"
 #include "support/temporary_folder.hpp"
 
+#include <dsns/io/state_dict_file.hpp>
 #include <dsns/nn/state_dict.hpp>
 
 #include <array>
@@ -179,6 +180,23 @@ TEST_CASE("state dict: what is not the reference network is refused with one sen
   with("embedding.frequencies", Eigen::MatrixXd::Constant(3, 1, 1));
   with("probe.inputs", Eigen::MatrixXd::Ones(2, 3));
   CHECK(said(Archive("weights.npz")).find("no layer") != std::string::npos);
+}
+
+TEST_CASE("state dict: a file from PyTorch has PyTorch's values and derivatives", "[nn]") {
+  const auto file = std::filesystem::path(__FILE__).parent_path() / "pytorch_network.npz";  // by pytorch_network.py
+  const auto network = import_state_dict<double>(read_state_dict(file));
+  const Vec3d value(0.6421155792999311, 0.9715410448413864, 0.9860258546831555);
+  Eigen::Matrix<double, 3, 4> jacobian;
+  jacobian << 1.5001555086110092, -0.034455030048596166, 0.05707895503210171, 0.029703996441356698, -0.0390964306513981,
+      1.4921890753641882, -0.0044120164527082836, -0.027362228928140345, 0.033724487596608954, -0.012739023144898703,
+      1.4398768346229278, 0.01558844839133714;
+  const ChartBatch charts = charts_at(Vec3d(0.48, 0.6, 0.64));
+  const MotionJets ours = motion_jets(network, charts, 0.3);
+  const double accuracy = 1e-7;  // PyTorch has the frequencies in single precision
+  CHECK((ours.f - value).norm() < accuracy);
+  CHECK((ours.fu - jacobian.leftCols(3) * charts.e1).norm() < accuracy);
+  CHECK((ours.fv - jacobian.leftCols(3) * charts.e2).norm() < accuracy);
+  CHECK((ours.ft - jacobian.col(3)).norm() < accuracy);
 }
 
 }  // namespace state_dict_test
