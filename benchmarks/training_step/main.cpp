@@ -18,6 +18,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -52,6 +53,8 @@ std::vector<double> in_turns(int threads, double budget, const std::vector<std::
       const double start = clock_of(threads);
       for (int i = 0; i < calls[k]; ++i) pieces[k]();
       times[k].push_back((clock_of(threads) - start) / calls[k]);
+      // OpenBLAS's threads wait for more work in a loop, up to 2^26 clock cycles, and would take a core from the next piece.
+      if (threads > 1) std::this_thread::sleep_for(std::chrono::milliseconds(60));
     }
   std::vector<double> medians;
   for (auto& t : times) medians.push_back(median(std::move(t)));

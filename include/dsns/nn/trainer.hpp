@@ -8,6 +8,7 @@
 #include <dsns/optim/schedule.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <concepts>
 #include <cstdint>
 #include <numeric>
@@ -66,6 +67,7 @@ class Trainer {
     const Index groups = std::min<Index>(tiles, gradient_.size() > 1000000 ? 2 : 8);
     groups_ = std::vector<Group>(std::size_t(groups));
     for (Group& group : groups_) group.gradient.resize(gradient_.size());
+    tapes_ = std::vector<MatrixTape<T>>(std::size_t(std::min<Index>(options.threads, groups)));
   }
 
   const Mlp<T>& network() const { return network_; }
@@ -87,11 +89,15 @@ class Trainer {
   double step(double rate) {
     choose_batch();
     const Index tiles = (batch_ + tile_ - 1) / tile_, groups = Index(groups_.size());
-    parallel_for(int(groups), options_.threads, [&](int g) {
-      Group& group = groups_[std::size_t(g)];
-      group.gradient.setZero();
-      group.error = 0;
-      for (Index tile = g * tiles / groups; tile < (g + 1) * tiles / groups; ++tile) run(group, tile);
+    std::atomic<Index> next{0};
+    parallel_for(int(tapes_.size()), options_.threads, [&](int worker) {
+      for (Index g = next++; g < groups; g = next++) {
+        Group& group = groups_[std::size_t(g)];
+        group.gradient.setZero();
+        group.error = 0;
+        for (Index tile = g * tiles / groups; tile < (g + 1) * tiles / groups; ++tile)
+          run(tapes_[std::size_t(worker)], group, tile);
+      }
     });
     gradient_ = groups_[0].gradient;
     double error = groups_[0].error;
@@ -107,7 +113,6 @@ class Trainer {
 
  private:
   struct Group {
-    MatrixTape<T> tape;
     Eigen::VectorX<T> gradient;
     double error = 0;
   };
@@ -132,10 +137,9 @@ class Trainer {
     first_ = Index(steps_ % batches) * batch_;
   }
 
-  void run(Group& group, Index tile) {
+  void run(MatrixTape<T>& tape, Group& group, Index tile) {
     const Index begin = tile * tile_, n = std::min(tile_, batch_ - begin);
     const std::span<const Index> samples(order_.data() + first_ + begin, std::size_t(n));
-    MatrixTape<T>& tape = group.tape;
     tape.clear();
     const auto x = tape.constant(network_.shape().inputs, n * Problem::layout.blocks(),
                                  [&](Eigen::MatrixX<T>& m) { problem_->fill(samples, m); });
@@ -152,6 +156,7 @@ class Trainer {
   Eigen::VectorX<T> gradient_;
   std::vector<Index> order_;
   std::vector<Group> groups_;
+  std::vector<MatrixTape<T>> tapes_;  // one a thread, so that its memory stays in that processor's cache
   Index batch_ = 0, tile_ = 0, first_ = 0;
   std::int64_t steps_ = 0, epoch_ = -1;
 };
