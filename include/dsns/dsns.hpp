@@ -30,7 +30,9 @@
 #include <dsns/nn/state_dict.hpp>
 #include <dsns/nn/surface_archive.hpp>
 #include <dsns/sphere/fit_diffeomorphism.hpp>
+#include <dsns/stats/groups.hpp>
 #include <dsns/stats/moving_mean.hpp>
+#include <dsns/stats/principal_modes.hpp>
 #include <dsns/surface/analytic.hpp>
 #include <dsns/surface/any_surface.hpp>
 #include <dsns/surface/motion.hpp>
