@@ -84,6 +84,7 @@ TEST_CASE("velocities at irregular times give the same curve", "[elastic]") {
   for (const double t : {0.0, 0.05, 0.33, 0.9, 1.0}) {
     CHECK((curve.velocity(t) - Eigen::Vector2d(2 * t, 4 * t * t * t)).norm() < 1e-12);
     CHECK((curve.acceleration(t) - Eigen::Vector2d(2, 12 * t * t)).norm() < 1e-11);
+    CHECK((curve(t) - Eigen::Vector2d(t * t, 1 + t * t * t * t)).norm() < 1e-12);
   }
   CHECK((curve.end() - Eigen::Vector2d(1, 2)).norm() < 1e-12);
   CHECK_THROWS_AS(Curve(Eigen::Vector2d(0, 1), v, {0, 0.1, 0.15, 0.4, 0.8, 0.9}), InvalidArgument);
@@ -105,6 +106,16 @@ TEST_CASE("a warped curve has the velocity of the chain rule", "[elastic]") {
   const Curve a = warped(helix(0.5, 1), warp);
   for (const double t : {0.1, 0.5, 0.83})
     CHECK((a.velocity(t) - warp.slope(t) * helix(0.5, 1).velocity(warp(t))).norm() < 1e-6);
+}
+
+TEST_CASE("the rate of the SRVF is that of differences", "[elastic]") {
+  const Curve a = warped(helix(0.5, 1), random_time_warp(2, 0.5, 1.6));
+  constexpr double h = 1e-5;
+  for (const double t : {0.1, 0.5, 0.83}) {
+    const Eigen::VectorXd difference = (srvf_rate(a, t + h).value - srvf_rate(a, t - h).value) / (2 * h);
+    CHECK((srvf_rate(a, t).rate - difference).norm() < 1e-6 * difference.norm());
+    CHECK((srvf_rate(a, t).value - srvf(a.velocity(t))).norm() < 1e-12);
+  }
 }
 
 TEST_CASE("windows of time run around", "[elastic]") {

@@ -24,6 +24,13 @@ class Curve {
     bends_.resizeLike(velocities_);
     for (Index k = 0; k < velocities_.cols(); ++k)
       bends_.col(k) = velocities_ * spline.second_derivative_weights(times_[std::size_t(k)]);
+    knots_.resizeLike(velocities_);
+    knots_.col(0) = start_;
+    for (Index k = 0; k + 1 < velocities_.cols(); ++k) {
+      const double h = times_[std::size_t(k) + 1] - times_[std::size_t(k)];
+      knots_.col(k + 1) = knots_.col(k) + h / 2 * (velocities_.col(k) + velocities_.col(k + 1)) -
+                          h * h * h / 24 * (bends_.col(k) + bends_.col(k + 1));
+    }
   }
 
   const Eigen::VectorXd& start() const { return start_; }
@@ -43,15 +50,14 @@ class Curve {
     return (velocities_.col(k + 1) - velocities_.col(k)) / h +
            h / 6 * ((1 - 3 * y * y) * bends_.col(k) + (3 * x * x - 1) * bends_.col(k + 1));
   }
-  /// a(1).
-  Eigen::VectorXd end() const {
-    Eigen::VectorXd a = start_;
-    for (Index k = 0; k + 1 < velocities_.cols(); ++k) {
-      const double h = times_[std::size_t(k) + 1] - times_[std::size_t(k)];
-      a += h / 2 * (velocities_.col(k) + velocities_.col(k + 1)) - h * h * h / 24 * (bends_.col(k) + bends_.col(k + 1));
-    }
-    return a;
+  /// a(t), K.
+  Eigen::VectorXd operator()(double t) const {
+    const auto [k, h, x] = piece(t);
+    const double y = 1 - x, u = 1 - y * y, v = x * x;  // integrals from the left time of y, x, y^3 - y and x^3 - x
+    return knots_.col(k) + h / 2 * (u * velocities_.col(k) + v * velocities_.col(k + 1)) -
+           h * h * h / 24 * (u * u * bends_.col(k) + v * (2 - v) * bends_.col(k + 1));
   }
+  Eigen::VectorXd end() const { return (*this)(1); }
 
  private:
   struct Piece {
@@ -67,6 +73,7 @@ class Curve {
 
   Eigen::VectorXd start_;
   Eigen::MatrixXd velocities_, bends_;  // values and second derivatives of the spline, K x n
+  Eigen::MatrixXd knots_;               // points
   std::vector<double> times_;
 };
 
@@ -127,6 +134,17 @@ inline constexpr double resting_speed_squared = 1e-20;
 inline Eigen::MatrixXd srvf(const Eigen::MatrixXd& velocities) {
   const Eigen::RowVectorXd speed = (velocities.colwise().squaredNorm().array() + resting_speed_squared).sqrt();
   return velocities * speed.cwiseSqrt().cwiseInverse().asDiagonal();
+}
+
+/// q of a curve at a time, and its derivative by time.
+struct SrvfRate {
+  Eigen::VectorXd value, rate;
+};
+
+inline SrvfRate srvf_rate(const Curve& curve, double t) {
+  const Eigen::VectorXd v = curve.velocity(t), a = curve.acceleration(t);
+  const double speed = std::sqrt(v.squaredNorm() + resting_speed_squared);
+  return {v / std::sqrt(speed), (a - v * (v.dot(a) / (2 * speed * speed))) / std::sqrt(speed)};
 }
 
 /// q of a curve on the grid, warped: sqrt(zeta') q(zeta(t)), K x n; with a window, of that stretch of the curve.

@@ -144,10 +144,8 @@ class TemporalProblem {
     const double length = x.window.length;
     for (Index k = 0; k < n; ++k) {
       const double value = zeta.values()[k], t = x.window(value), pace = std::sqrt(zeta.slopes()[k]);
-      const Eigen::VectorXd v = second_->velocity(t), a = second_->acceleration(t);
-      const double speed = std::sqrt(v.squaredNorm() + resting_speed_squared), root = pace * std::sqrt(length);
-      const Eigen::VectorXd q = v / std::sqrt(speed) * root;
-      const Eigen::VectorXd dq = (a - v * (v.dot(a) / (2 * speed * speed))) / std::sqrt(speed) * root;
+      const auto [field, rate] = srvf_rate(*second_, t);
+      const Eigen::VectorXd q = pace * std::sqrt(length) * field, dq = pace * std::sqrt(length) * rate;
       d_time.head(K) = length * (integral.row(k) - value * total);
       d_root.head(K) = 0.5 * (basis_.row(k).head(K) - total);
       const double w = grid_.weights[k];
