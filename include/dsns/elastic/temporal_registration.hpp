@@ -170,7 +170,7 @@ inline TemporalResult register_temporally(const Curve& first, const Curve& secon
     summary.energy_after = energy;
     summary.stop = "all levels done";
   };
-  /// A registration from the first's side, or from the second's, judged by what it leaves of the stretches' own terms.
+  // A registration from the first's side, or from the second's, judged by what it leaves of the stretches' own terms.
   enum class Side { first, second };
   const auto judge = [&](const detail::DirectedRegistration& r, Side target) {
     summary.steps += r.steps;
