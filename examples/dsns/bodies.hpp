@@ -6,7 +6,7 @@
 #include <dsns/core/progress.hpp>
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/elastic/spatial_options.hpp>
-#include <dsns/elastic/time_warp.hpp>
+#include <dsns/elastic/temporal_options.hpp>
 #include <dsns/mesh/own_mesh.hpp>
 #include <dsns/mesh/repair.hpp>
 #include <dsns/mesh/sphere_certificate.hpp>
@@ -34,6 +34,7 @@ struct Settings {
   std::string json;
   Representation representation = Representation::sampled;
   RotationSearch search = RotationSearch::upright;
+  TemporalAlignment alignment = TemporalAlignment::whole;
   Preset preset = Preset::general;
   int steps = 0;           ///< of the fit; 0: the preset's
   double seconds = 0;      ///< of the fit; 0: no limit

@@ -31,6 +31,25 @@ struct RepresentationEvaluation {
 /// returns  how many could not be used
 int evaluate_representation(const std::vector<std::string>& sources, const Settings& settings,
                             const RepresentationEvaluation& evaluation, Report& report);
+/// Animations named, and for a folder every clip of every file in it.
+std::vector<std::string> sequences_of(const std::vector<std::string>& sources);
+enum class TemporalExperiment {
+  warps,     ///< of each sequence, recovered
+  pairs,     ///< each sequence against each other
+  stretches  ///< each sequence against a part of it, and against more than one cycle
+};
+struct TemporalEvaluation {
+  TemporalExperiment experiment = TemporalExperiment::warps;
+  int warps = 10;             ///< random ones, of each sequence; of each pair that performs one clip
+  int networks = 2;           ///< for so many of them the paper's network is trained
+  bool strong = false;        ///< slopes from 0.03 to 4 instead of 0.2 to 2.3
+  std::filesystem::path out;  ///< folder for the plot, or empty; likewise below
+  std::filesystem::path csv, markdown;
+};
+/// Known warps of time are recovered, or sequences brought to the pace of others.
+/// returns  how many could not be used
+int evaluate_temporal(const std::vector<std::string>& sources, const Settings& settings,
+                      const TemporalEvaluation& evaluation, Report& report);
 /// The whole chain into a folder. With no sources, makes three bodies first.
 void demo(std::vector<std::string> sources, const std::filesystem::path& folder, const Settings& settings,
           Report& report);

@@ -219,6 +219,15 @@ void report_summary(const RepresentationTable& table, Report& report) {
 
 }  // namespace
 
+std::vector<std::string> sequences_of(const std::vector<std::string>& sources) {
+  std::vector<std::string> names;
+  for (const std::string& source : sources)
+    for (std::string& name : expanded(source)) names.push_back(std::move(name));
+  require<FileError>(!names.empty(), sources.front(),
+                     " holds no animation that can be read: give GLB files or folders of OBJ frames");
+  return names;
+}
+
 int evaluate_representation(const std::vector<std::string>& sources, const Settings& settings,
                             const RepresentationEvaluation& evaluation, Report& report) {
   if (!evaluation.out.empty()) {
@@ -232,12 +241,7 @@ int evaluate_representation(const std::vector<std::string>& sources, const Setti
   table.conditions = message("Preset ", word(settings.preset),
                              settings.seconds > 0 ? message(", ", settings.seconds, " seconds a fit") : std::string(),
                              ", ", settings.threads, settings.threads == 1 ? " thread." : " threads.");
-  std::vector<std::string> names;
-  for (const std::string& source : sources)
-    for (std::string& name : expanded(source)) names.push_back(std::move(name));
-  require<FileError>(!names.empty(), sources.front(),
-                     " holds no animation that can be read: give GLB files or folders of OBJ frames");
-  for (const std::string& name : names) {
+  for (const std::string& name : sequences_of(sources)) {
     try {
       table.rows.push_back(evaluate_one(name, settings, evaluation, report));
     } catch (const std::exception& error) {

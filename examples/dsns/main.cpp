@@ -166,6 +166,8 @@ int main(int argc, char** argv) {
   std::string out, overview, own;
   int steps = 5, unusable = 0;
   RepresentationEvaluation evaluation;
+  TemporalEvaluation temporal;
+  bool pairs = false, stretches = false;
 
   CLI::App app{"Elastic analysis of moving surfaces: registered sequences, geodesics and means of animations."};
   app.set_version_flag("--version", dsns::version);
@@ -179,7 +181,7 @@ int main(int argc, char** argv) {
     CLI::App* sub = parent->add_subcommand(name, what);
     sub->callback([&, run, name] {
       check_output(settings.json, "");
-      if (name != "demo" && name != "representation")
+      if (name != "demo" && name != "representation" && name != "temporal")
         check_output(out, name == "fit" && dsns::lower_extension(out) == ".dsns" ? ".dsns" : ".glb");
       check_output(settings.checkpoint, ".dsns");
       check_output(overview, ".glb");
@@ -247,6 +249,47 @@ int main(int argc, char** argv) {
   representation_command->add_option("--markdown", evaluation.markdown, "likewise, with the D-SNS paper's beside it");
   about_fits(representation_command, settings);
 
+  CLI::App* temporal_command = command_of(evaluate_command, "temporal",
+                                          "recover known warps of time, or bring pairs of animations to one pace", [&] {
+                                            check_output(temporal.csv.string(), "");
+                                            check_output(temporal.markdown.string(), "");
+                                            temporal.out = out;
+                                            if (pairs || (sources.size() == 2 && !stretches))
+                                              temporal.experiment = TemporalExperiment::pairs;
+                                            if (stretches) temporal.experiment = TemporalExperiment::stretches;
+                                            unusable = evaluate_temporal(sources, settings, temporal, report);
+                                          });
+  temporal_command
+      ->add_option("FILES", sources,
+                   "animations, or folders, which stand for every clip of every file in them; two of them are a pair")
+      ->required()
+      ->expected(1, 10000);
+  temporal_command->add_option("--warps", temporal.warps, "random warps of each")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  temporal_command->add_option("--networks", temporal.networks, "for how many of them the paper's network is trained")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1000));
+  temporal_command->add_flag("--strong", temporal.strong, "warps with slopes from 0.03 to 4 instead of 0.2 to 2.3");
+  CLI::Option* pairs_flag =
+      temporal_command->add_flag("--pairs", pairs, "each animation against each other, not against itself");
+  temporal_command
+      ->add_flag("--stretches", stretches, "each against itself played twice, begun a third late, cut off at 70 %")
+      ->excludes(pairs_flag);
+  temporal_command->add_option("-o,--out", out, "folder for a plot of the errors");
+  temporal_command->add_option("--csv", temporal.csv, "write all errors to this file");
+  temporal_command->add_option("--markdown", temporal.markdown, "write the table to this file");
+  add_choice(temporal_command, "--surface", settings.representation,
+             {{"sampled", Representation::sampled}, {"fitted", Representation::neural}},
+             "fitted: closed forms, five seconds unless told otherwise; sampled: the mesh with splines in time");
+  about_fits(temporal_command, settings);
+  temporal_command->preparse_callback([&](std::size_t) {
+    settings.frames = 0;
+    settings.preset = Preset::fast;
+    settings.seconds = 5;
+    settings.representation = Representation::neural;
+  });
+
   CLI::App* register_command =
       command("register", "bring the second animation into correspondence with the first", [&] {
         const std::vector<Body> bodies = load(sources, settings, report);
@@ -254,6 +297,12 @@ int main(int argc, char** argv) {
       });
   register_command->add_option("FILES", sources, "two animations")->required()->expected(2);
   register_command->add_option("-o,--output", out, "write both and the registered second to this GLB");
+  add_choice(
+      register_command, "--align", settings.alignment,
+      {{"whole", dsns::TemporalAlignment::whole},
+       {"partial", dsns::TemporalAlignment::partial},
+       {"cyclic", dsns::TemporalAlignment::cyclic}},
+      "whole: from start to end; partial: of the longer one, what matches the other; cyclic: the second runs around");
   add_own_mesh(register_command);
   add_registration(register_command, settings);
 

@@ -1,5 +1,6 @@
 // register, geodesic, mean: what is said of several animations.
 #include "commands.hpp"
+#include "registration.hpp"
 #include "scene.hpp"
 
 #include <dsns/mesh/sphere_mask.hpp>
@@ -18,6 +19,7 @@ RegistrationOptions registration_options(const Body& first, const Settings& sett
   options.spatial.search = settings.search;
   options.spatial.threads = settings.threads;
   options.snapshots = settings.frames;
+  options.temporal.alignment = settings.alignment;
   return options;
 }
 
@@ -34,7 +36,12 @@ void report_registration(const MovingRegistration& r, Report& report) {
   report.figure("temporal.energy_before", "temporal energy before", t.energy_before);
   report.figure("temporal.energy_after", "temporal energy after", t.energy_after);
   report.figure("temporal.min_slope", "smallest slope of the time warp", t.min_slope);
+  const TemporalResult& time = r.temporal;
+  if (time.first.length != 1) report.figure("temporal.first_end", "the first is met up to", time.first.length);
+  if (time.second.begin != 0) report.figure("temporal.second_begin", "the second is met from", time.second.begin);
+  if (time.second.length != 1) report.figure("temporal.second_passes", "so much of the second", time.second.length);
   report.figure("temporal.stop", "stopped because", t.stop);
+  if (!t.advice.empty()) report.figure("temporal.advice", "advice", t.advice);
   // Where the figures say that the result is doubtful, so do we.
   const auto note = [&](const std::string& text) { report.say("  Note: " + text); };
   if (s.energy_after > 0.3 * s.norm)
@@ -63,26 +70,45 @@ std::vector<Mat3X> registered_frames(const Body& body, const MovingRegistration&
   const Mat3X y = r.spatial.gamma(sphere);
   std::vector<Mat3X> out;
   for (int k = 0; k < frames; ++k)
-    out.push_back(r.spatial.rotation * positions(body.surface, y, r.temporal.warp(double(k) / (frames - 1))));
+    out.push_back(r.spatial.rotation * positions(body.surface, y, r.temporal.second_time(double(k) / (frames - 1))));
   return out;
+}
+
+/// Where the body's root goes along the registered times, from its place at the first of them; another pass goes on where the
+/// last ended.
+Mat3X registered_trajectory(const Body& body, const MovingRegistration& r, int frames) {
+  const NormalizedSequence& n = body.normalized;
+  const CubicSpline spline(n.trajectory.cols());
+  const Vec3d pass = n.trajectory.rightCols<1>() - n.trajectory.leftCols<1>();
+  Mat3X out(3, frames);
+  for (int k = 0; k < frames; ++k) {
+    const double z = r.temporal.warp(double(k) / (frames - 1)), t = r.temporal.second(z);
+    const double passes = std::round(r.temporal.second.begin + r.temporal.second.length * z - t);
+    out.col(k) = n.trajectory * spline.weights(t) + passes * pass;
+  }
+  return r.spatial.rotation * (out.colwise() - Vec3d(out.col(0))) / n.scale;
 }
 
 /// The same as a mesh with size and motion.
 MeshSequence registered(const Body& body, const MovingRegistration& r, const TriangleMesh& sphere, int frames) {
   return denormalize(registered_frames(body, r, sphere.vertices, frames), sphere.faces,
-                     r.spatial.rotation * relative_trajectory(body.normalized, r.temporal.warp, frames),
-                     body.normalized.scale, body.normalized.sequence.duration, body.normalized.sequence.name);
+                     registered_trajectory(body, r, frames), body.normalized.scale,
+                     r.temporal.second.length * body.normalized.sequence.duration, body.normalized.sequence.name);
 }
 
 double mix(double a, double b, double tau) { return (1 - tau) * a + tau * b; }
 
 }  // namespace
 
+MovingRegistration register_bodies(const Body& first, const Body& second, const Settings& settings,
+                                   const Progress& progress) {
+  return register_moving(first.surface, second.surface, first.sphere, registration_options(first, settings), progress);
+}
+
 void register_two(const Body& a, const Body& b, const std::filesystem::path& out, const std::filesystem::path& own,
                   const Settings& settings, Report& report) {
   ProgressLine line;
-  const MovingRegistration r =
-      register_moving(a.surface, b.surface, a.sphere, registration_options(a, settings), std::ref(line));
+  const MovingRegistration r = register_bodies(a, b, settings, std::ref(line));
   report_registration(r, report);
   say_units(report);
   if (!own.empty()) {
@@ -105,7 +131,7 @@ void geodesic(const Body& a, const Body& b, const std::filesystem::path& out, in
               Report& report) {
   ProgressLine line;
   const RegistrationOptions options = registration_options(a, settings);
-  const MovingRegistration r = register_moving(a.surface, b.surface, a.sphere, options, std::ref(line));
+  const MovingRegistration r = register_bodies(a, b, settings, std::ref(line));
   const std::vector<SurfaceSamples> samples{sample(a.surface, {}, a.sphere.vertices, options),
                                             sample(b.surface, r.spatial, a.sphere.vertices, options)};
   const FunctionalPca pca = joint_pca(samples, a.sphere, options);

@@ -29,6 +29,7 @@
 #include <dsns/nn/closed_form.hpp>
 #include <dsns/nn/state_dict.hpp>
 #include <dsns/nn/surface_archive.hpp>
+#include <dsns/nn/warp_network.hpp>
 #include <dsns/sphere/fit_diffeomorphism.hpp>
 #include <dsns/stats/groups.hpp>
 #include <dsns/stats/moving_mean.hpp>

@@ -72,6 +72,61 @@ TEST_CASE("a curve without two velocities is refused", "[elastic]") {
   CHECK_THROWS_AS(Curve(Eigen::Vector3d::Zero(), Eigen::MatrixXd::Zero(2, 9)), InvalidArgument);
 }
 
+TEST_CASE("velocities at irregular times give the same curve", "[elastic]") {
+  const std::vector<double> times{0, 0.1, 0.15, 0.4, 0.8, 1};
+  // a = (t^2, t^4): cubic velocities, which the spline meets exactly
+  Eigen::MatrixXd v(2, 6);
+  for (Index k = 0; k < 6; ++k) {
+    const double t = times[std::size_t(k)];
+    v.col(k) << 2 * t, 4 * t * t * t;
+  }
+  const Curve curve(Eigen::Vector2d(0, 1), v, times);
+  for (const double t : {0.0, 0.05, 0.33, 0.9, 1.0}) {
+    CHECK((curve.velocity(t) - Eigen::Vector2d(2 * t, 4 * t * t * t)).norm() < 1e-12);
+    CHECK((curve.acceleration(t) - Eigen::Vector2d(2, 12 * t * t)).norm() < 1e-11);
+    CHECK((curve(t) - Eigen::Vector2d(t * t, 1 + t * t * t * t)).norm() < 1e-12);
+  }
+  CHECK((curve.end() - Eigen::Vector2d(1, 2)).norm() < 1e-12);
+  CHECK_THROWS_AS(Curve(Eigen::Vector2d(0, 1), v, {0, 0.1, 0.15, 0.4, 0.8, 0.9}), InvalidArgument);
+  CHECK_THROWS_AS(Curve(Eigen::Vector2d(0, 1), v, {0, 0.5, 1}), InvalidArgument);
+}
+
+TEST_CASE("the curve through points is their cubic spline", "[elastic]") {
+  const std::vector<double> times{0, 0.2, 0.3, 0.6, 1};
+  Eigen::MatrixXd x(1, 5);
+  for (Index k = 0; k < 5; ++k) x(0, k) = std::pow(times[std::size_t(k)], 3) + 2;
+  const Curve curve = curve_through(x, times);
+  CHECK(curve.start()[0] == 2);
+  CHECK(curve.end()[0] == Approx(3).epsilon(1e-12));
+  for (const double t : {0.0, 0.1, 0.5, 0.77}) CHECK(curve.velocity(t)[0] == Approx(3 * t * t).margin(1e-11));
+}
+
+TEST_CASE("a warped curve has the velocity of the chain rule", "[elastic]") {
+  const TimeWarp warp = random_time_warp(2, 0.5, 1.6);
+  const Curve a = warped(helix(0.5, 1), warp);
+  for (const double t : {0.1, 0.5, 0.83})
+    CHECK((a.velocity(t) - warp.slope(t) * helix(0.5, 1).velocity(warp(t))).norm() < 1e-6);
+}
+
+TEST_CASE("the rate of the SRVF is that of differences", "[elastic]") {
+  const Curve a = warped(helix(0.5, 1), random_time_warp(2, 0.5, 1.6));
+  constexpr double h = 1e-5;
+  for (const double t : {0.1, 0.5, 0.83}) {
+    const Eigen::VectorXd difference = (srvf_rate(a, t + h).value - srvf_rate(a, t - h).value) / (2 * h);
+    CHECK((srvf_rate(a, t).rate - difference).norm() < 1e-6 * difference.norm());
+    CHECK((srvf_rate(a, t).value - srvf(a.velocity(t))).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("windows of time run around", "[elastic]") {
+  const TimeWindow window{0.7, 0.5};
+  CHECK(window(0) == 0.7);
+  CHECK(window(0.6) == 1);
+  CHECK(window(0.8) == Approx(0.1));
+  CHECK(TimeWindow{}(1) == 1);
+  CHECK(TimeWindow{0, 2}(0.75) == Approx(0.5));
+}
+
 TEST_CASE("interpolation between columns is linear and exact at them", "[elastic]") {
   Eigen::MatrixXd x(1, 3);
   x << 1, 2, 5;

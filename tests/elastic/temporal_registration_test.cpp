@@ -59,19 +59,143 @@ TEST_CASE("a curve is registered to itself, and to a resting one, by the identit
   CHECK(distance(r.warp, {}) < 1e-12);
 }
 
-TEST_CASE("dynamic programming follows a piecewise linear warp on its own grid", "[elastic]") {
-  constexpr int n = 61;
-  Eigen::MatrixXd q2(5, n), q1(5, n);
-  const auto zeta = [](double t) { return t < 0.5 ? t / 2 : 0.25 + (t - 0.5) * 1.5; };
-  for (int k = 0; k < n; ++k) {
-    const double t = double(k) / (n - 1), slope = t < 0.5 ? 0.5 : 1.5;
-    q2.col(k) = srvf(velocity(t));
-    q1.col(k) = std::sqrt(slope) * srvf(velocity(zeta(t)));
+TEST_CASE("a warp that nearly stops the clock and then hurries is recovered", "[elastic]") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  const TimeWarp warp = random_time_warp(seed, 0.03, 4);
+  const Curve first = curve({});
+  CHECK(distance(register_temporally(first, warped(first, warp)).warp, inverse(warp)) < 1e-3);
+}
+
+TEST_CASE("what a warp costs pulls it to the identity by the closed form", "[elastic]") {
+  // On the line q1 = sqrt(f), q2 = 1 and the cost p N (1 - sqrt(zeta'))^2 leave |sqrt(f) - sqrt(zeta')|^2 + p N |1 -
+  // sqrt(zeta')|^2, least for zeta' proportional to (sqrt(f) + p N)^2. Both lengths are 1: N = 1.
+  constexpr Index n = 201;
+  Eigen::MatrixXd f(1, n);
+  for (Index k = 0; k < n; ++k) f(0, k) = 1 + 0.6 * std::cos(2 * pi * double(k) / (n - 1));
+  const Curve first(Eigen::VectorXd::Zero(1), f), second(Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Ones(1, 9));
+  TemporalOptions options;
+  options.ridge = 0;
+  options.penalty = GENERATE(0.0, 0.5, 3.0);
+  const Eigen::ArrayXd root = f.row(0).transpose().array().sqrt() + options.penalty;
+  const TimeWarp expected = TimeWarp::from_log_slope(2 * root.log());
+  CHECK(distance(register_temporally(first, second, options).warp, expected) < 2e-5);
+}
+
+TEST_CASE("noise is not aligned where warps cost something", "[elastic]") {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  const auto noisy = [&] {
+    Eigen::MatrixXd v(5, 65);
+    for (Index k = 0; k < 65; ++k) {
+      v.col(k) = velocity(double(k) / 64);
+      for (Index i = 0; i < 5; ++i) v(i, k) += 0.15 * normal(random);
+    }
+    return Curve(Eigen::VectorXd::Zero(5), v);
+  };
+  const Curve a = noisy(), b = noisy();
+  TemporalOptions options;
+  const TemporalResult free = register_temporally(a, b, options);
+  options.penalty = 3;
+  const TemporalResult priced = register_temporally(a, b, options);
+  CHECK(free.summary.min_slope < 0.7);
+  CHECK(priced.summary.min_slope > 0.8);
+  CHECK(distance(priced.warp, {}) < distance(free.warp, {}));
+  CHECK(priced.summary.energy_after > free.summary.energy_after);
+}
+
+TEST_CASE("a motion cut off at 70 % is found in the whole one, from either side", "[elastic]") {
+  const TimeWarp pace = random_time_warp(4, 0.6, 1.5);
+  Eigen::MatrixXd v(5, 257);
+  for (Index k = 0; k < 257; ++k) {
+    const double t = double(k) / 256;
+    v.col(k) = 0.7 * pace.slope(t) * velocity(0.7 * pace(t));
   }
-  const Eigen::VectorXd warp = detail::dynamic_programming_warp(q1, q2, 5);
-  double worst = 0;
-  for (int k = 0; k < n; ++k) worst = std::max(worst, std::abs(warp[k] - zeta(double(k) / (n - 1))));
-  CHECK(worst < 0.035);  // two nodes: the corner and the interpolated q2 leave no more freedom
+  const Curve whole = curve({}), part(Eigen::VectorXd::Zero(5), v);
+  TemporalOptions options;
+  options.alignment = TemporalAlignment::partial;
+  const TemporalResult a = register_temporally(part, whole, options), b = register_temporally(whole, part, options);
+  CHECK(a.second.length == Approx(0.7).epsilon(1e-3));
+  CHECK(a.first.length == 1);
+  CHECK(distance(a.warp, pace) < 1e-3);
+  CHECK(b.first.length == Approx(0.7).epsilon(1e-3));
+  CHECK(b.second.length == 1);
+  CHECK(distance(b.warp, inverse(pace)) < 1e-3);
+  CHECK(b.first_time(0.5) == Approx(0.7 * pace(b.second_time(0.5))).epsilon(2e-3));
+
+  options.alignment = TemporalAlignment::whole;
+  const TemporalSummary summary = register_temporally(whole, part, options).summary;
+  CHECK(summary.energy_after < summary.energy_before);
+  CHECK(summary.advice.find("partial") == 0);
+  options.search_grid = 0;
+  CHECK(register_temporally(whole, part, options).summary.advice.empty());
+}
+
+TEST_CASE("whole motions of one pace stay whole in partial alignment", "[elastic]") {
+  TemporalOptions options;
+  options.alignment = TemporalAlignment::partial;
+  const TimeWarp warp = random_time_warp(6, 0.5, 1.7);
+  const TemporalResult r = register_temporally(curve({}), warped(curve({}), warp), options);
+  CHECK(r.first.length == Approx(1).epsilon(1e-3));
+  CHECK(r.second.length == Approx(1).epsilon(1e-3));
+  CHECK(distance(r.warp, inverse(warp)) < 1e-3);
+}
+
+namespace {
+
+/// A closed motion, `passes` times around from a phase.
+Curve around(double phase, double passes, const TimeWarp& pace = {}) {
+  Eigen::MatrixXd v(4, 513);
+  for (Index k = 0; k < 513; ++k) {
+    const double s = double(k) / 512, t = 2 * pi * (phase + passes * pace(s));
+    v.col(k) << std::cos(t), std::sin(t) + 0.4 * std::cos(2 * t + 1), 0.5 * std::sin(3 * t), 0.3 * std::cos(2 * t);
+    v.col(k) *= passes * pace.slope(s);
+  }
+  return {Eigen::VectorXd::Zero(4), v};
+}
+
+}  // namespace
+
+TEST_CASE("a cycle that starts a third late is met at its phase", "[elastic]") {
+  const TimeWarp pace = random_time_warp(8, 0.6, 1.5);
+  const Curve first = around(0, 1, pace), second = around(1.0 / 3, 1);
+  TemporalOptions options;
+  options.alignment = TemporalAlignment::cyclic;
+  const TemporalResult r = register_temporally(first, second, options);
+  CHECK(r.second.begin == Approx(2.0 / 3).epsilon(1e-3));
+  CHECK(r.second.length == 1);
+  CHECK(distance(r.warp, pace) < 1e-3);
+  CHECK(r.summary.energy_after < 1e-5 * r.summary.norm);
+
+  const TemporalSummary summary = register_temporally(first, second).summary;
+  CHECK(summary.energy_after > 0.05 * summary.norm);
+  CHECK(summary.advice.find("cyclic") == 0);
+}
+
+TEST_CASE("two cycles are met with one, and one with two", "[elastic]") {
+  TemporalOptions options;
+  options.alignment = TemporalAlignment::cyclic;
+  const Curve once = around(0, 1), twice = around(0, 2);
+  const TemporalResult half = register_temporally(once, twice, options),
+                       two = register_temporally(twice, once, options);
+  CHECK(half.second.length == 0.5);
+  CHECK(half.summary.energy_after < 1e-5 * half.summary.norm);
+  CHECK(two.second.length == 2);
+  CHECK(two.summary.energy_after < 1e-5 * two.summary.norm);
+  CHECK(distance(two.warp, {}) < 1e-3);
+  options.passes = 1;
+  CHECK(register_temporally(once, twice, options).second.length == 1);
+}
+
+TEST_CASE("options out of their ranges are refused", "[elastic]") {
+  TemporalOptions options;
+  options.penalty = -1;
+  CHECK_THROWS_AS(register_temporally(curve({}), curve({}), options), InvalidArgument);
+  options = {};
+  options.min_share = 0;
+  CHECK_THROWS_AS(register_temporally(curve({}), curve({}), options), InvalidArgument);
+  options = {};
+  options.cosines.clear();
+  CHECK_THROWS_AS(register_temporally(curve({}), curve({}), options), InvalidArgument);
 }
 
 TEST_CASE("curves of different dimensions are refused", "[elastic]") {

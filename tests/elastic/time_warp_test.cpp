@@ -2,6 +2,8 @@
 
 #include <dsns/elastic/time_warp.hpp>
 
+#include <utility>
+
 namespace time_warp_test {
 
 using namespace dsns;
@@ -66,6 +68,23 @@ TEST_CASE("the mean of a warp and its reversal in the log-slope is near the iden
   const auto integral = [](double x) { return x / 2 + std::sinh(2 * x * 0.3) / (4 * 0.3); };
   for (const double t : {0.25, 0.7})
     CHECK(mean(t) == Approx((integral(t - 0.5) + integral(0.5)) / (2 * integral(0.5))).epsilon(1e-5));
+}
+
+TEST_CASE("random warps reach the slopes asked for and keep their ends", "[elastic]") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u, 6u);
+  const auto [least, most] = GENERATE(std::pair(0.2, 2.3), std::pair(0.03, 4.0), std::pair(0.9, 1.5));
+  const TimeWarp warp = random_time_warp(seed, least, most);
+  CHECK(warp(1) == 1);
+  CHECK(warp.slopes().minCoeff() == Approx(least).epsilon(1e-9));
+  CHECK(warp.slopes().maxCoeff() == Approx(most).epsilon(1e-9));
+  CHECK(distance(warp, random_time_warp(seed, least, most)) == 0);
+  CHECK(distance(warp, random_time_warp(seed + 1, least, most)) > 1e-3);
+}
+
+TEST_CASE("slopes that leave no room for 1 are refused", "[elastic]") {
+  CHECK_THROWS_AS(random_time_warp(1, 0, 2), InvalidArgument);
+  CHECK_THROWS_AS(random_time_warp(1, 1, 2), InvalidArgument);
+  CHECK_THROWS_AS(random_time_warp(1, 0.5, 0.9), InvalidArgument);
 }
 
 }  // namespace time_warp_test

@@ -201,6 +201,40 @@ TEST_CASE("a representation is evaluated on every file of a folder, and a broken
   CHECK(map.vertex_count() == icosphere(2).vertices.cols());
 }
 
+TEST_CASE("known warps of a motion are recovered, by all methods, and pairs are compared", "[program]") {
+  const test::TemporaryFolder folder;
+  const auto file = [&](const std::string& name) { return folder.path() / name; };
+  LimbedBody body;
+  body.limbs = {{Vec3d(1, 0.5, 0).normalized(), 6, Vec3d(1, 0.4, 0), Vec3d(0, 0.4, 0.2)}};
+  write_gltf(file("a.glb"), sequence_of(body, icosphere(2), 40));
+  write_gltf(file("b.glb"), sequence_of(body, icosphere(2), 40));
+  const Run r = run(folder.path(), "evaluate temporal " + quoted(file("a.glb")) +
+                                       " --rate 40 --warps 2 --networks 0 --surface sampled -o " +
+                                       quoted(file("boxes")) + " --json " + quoted(file("t.json")) + " --csv " +
+                                       quoted(file("t.csv")) + " --markdown " + quoted(file("t.md")));
+  INFO(r.out << r.err);
+  REQUIRE(r.status == 0);
+  const std::string json = read(file("t.json")), rows = json.substr(json.find("\"rows\": ["));
+  // Two warps: before, dp and ours from all frames and from 25, dp and ours of 50 and 25 raw samples.
+  CHECK(count(rows, "\"warp_l2\": ") == 2 * (3 + 3 + 2 + 2));
+  for (const std::string key : {"file", "method", "samples", "seconds"}) CHECK(count(rows, "\"" + key + "\": ") >= 20);
+  const std::string ours = rows.substr(rows.find("\"method\": \"ours\"")), before = rows;
+  CHECK(number_after(before, "warp_l2") > 0.02);
+  CHECK(number_after(ours, "warp_l2") < 1e-3);
+  CHECK(count(read(file("t.csv")), "\n") == 21);
+  CHECK(count(read(file("t.md")), "ours; sampled from all frames") == 1);
+  CHECK(count(r.out, "No picture") == 1);
+  CHECK(read(file("boxes") / "temporal_warps.gnuplot").find("boxplot") != std::string::npos);
+
+  const Run pair = run(folder.path(), "evaluate temporal " + quoted(file("a.glb")) + " " + quoted(file("b.glb")) +
+                                          " --rate 40 --warps 1 --json " + quoted(file("p.json")));
+  INFO(pair.out << pair.err);
+  REQUIRE(pair.status == 0);
+  const std::string pairs = read(file("p.json"));
+  CHECK(count(pairs, "\"distance\": ") == 5);  // before, three of dynamic programming, ours
+  check_refused(run(folder.path(), "evaluate temporal " + quoted(file("nowhere.glb"))), "nowhere.glb");
+}
+
 TEST_CASE("a fit ends at its target error, which it names", "[program]") {
   const test::TemporaryFolder folder;
   write_gltf(folder.path() / "ball.glb", growing(icosphere(2)));

@@ -55,6 +55,30 @@ TEST_CASE("a body moving at another pace on a warped sphere is brought back in s
   CHECK(r.spatial.summary.min_jacobian > 0);
 }
 
+TEST_CASE("law: the ends of a geodesic are the moving bodies, to what the components leave", "[law][stats]") {
+  const LimbedBody a = some_body(0.9, 0), b = some_body(1.1, 0.3);
+  const TriangleMesh sphere = icosphere(2);
+  RegistrationOptions options = quick();
+  options.pca.residual = GENERATE(1e-5, 1e-7);
+  const std::vector<SurfaceSamples> samples{sample(a, {}, sphere.vertices, options),
+                                            sample(b, {}, sphere.vertices, options)};
+  const FunctionalPca pca = joint_pca(samples, sphere, options);
+  const TimeWarp warp = random_time_warp(3, 0.6, 1.5);
+  const CurveGeodesic way(shape_curve(samples[0], pca), shape_curve(samples[1], pca), warp);
+  const auto check = [&](const LimbedBody& body, double tau, const TimeWarp& zeta) {
+    double msd = 0;
+    for (int k = 0; k < 12; ++k) {
+      const double t = k / 11.0;
+      const Mat3X x = pca.reconstruct(interpolate(way.points(tau), t)), y = positions(body, sphere.vertices, zeta(t));
+      msd += (x - y).squaredNorm() / double(x.size()) / 12;
+    }
+    INFO("residual " << pca.residual() << ", of the end at " << tau << ": " << msd);
+    CHECK(msd < 4 * options.pca.residual);  // of the vertices, which do not have the areas' weights
+  };
+  check(a, 0, {});
+  check(b, 1, warp);
+}
+
 TEST_CASE("the mean of two sizes of a body has the size between", "[stats]") {
   const std::vector<LimbedBody> bodies{some_body(0.9, 0.3), some_body(1.1, -0.3)};
   MovingMeanOptions options;

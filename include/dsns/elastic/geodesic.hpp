@@ -2,7 +2,7 @@
 /// Geodesics between curves that are registered in time: straight lines in (start, q), sent back by integrating q |q|.
 /// Curves of surfaces make this a path of curves in the space of their principal components, with the warp quotiented out,
 /// not a geodesic of surfaces in the elastic metric of space.
-#include <dsns/elastic/srvf.hpp>
+#include <dsns/elastic/elastic_energy.hpp>
 
 namespace dsns {
 
@@ -14,10 +14,11 @@ class CurveGeodesic {
         start1_(first.start()),
         start2_(second.start()),
         q1_(warped_srvf(first, {}, grid_)),
-        q2_(warped_srvf(second, warp, grid_)) {}
+        q2_(warped_srvf(second, warp, grid_)),
+        energy_(elastic_energy(first, second, warp)) {}
 
   /// sqrt(|a1(0) - a2(0)|^2 + |q1 - q2 * zeta|^2): the first term in squared units of a, the second in units of a.
-  double distance() const { return std::sqrt((start1_ - start2_).squaredNorm() + squared_norm(q1_ - q2_, grid_)); }
+  double distance() const { return std::sqrt((start1_ - start2_).squaredNorm() + energy_); }
 
   /// Points of the curve at fraction tau of the way, K x times().size(); tau = 0 is the first, 1 the second, registered.
   Eigen::MatrixXd points(double tau) const {
@@ -29,6 +30,7 @@ class CurveGeodesic {
   TimeGrid grid_;
   Eigen::VectorXd start1_, start2_;
   Eigen::MatrixXd q1_, q2_;
+  double energy_;
 };
 
 /// Columns of values at equidistant times from 0 to 1, interpolated linearly at t.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -128,13 +129,22 @@ inline TimeWarp inverse(const TimeWarp& warp) {
                                 [&](double t) { return 1 / std::max(warp.slope(warp.inverse(t)), 1e-12); });
 }
 
+/// A function of time and its derivative: a TimeWarp, a PiecewiseLinearWarp, a WarpNetwork.
+template <class W>
+concept WarpOfTime = requires(const W& w, double t) {
+  { w(t) } -> std::same_as<double>;
+  { w.slope(t) } -> std::same_as<double>;
+};
+
 /// Root of the integral of (a - b)^2 over [0, 1], in the unit of the clip's length.
-inline double distance(const TimeWarp& a, const TimeWarp& b) {
+template <WarpOfTime A, WarpOfTime B>
+double distance(const A& a, const B& b) {
   constexpr int n = 1000;
   double sum = 0;
   for (int k = 0; k < n; ++k) sum += std::pow(a((k + 0.5) / n) - b((k + 0.5) / n), 2);
   return std::sqrt(sum / n);
 }
+inline double distance(const TimeWarp& a, const TimeWarp& b) { return distance<TimeWarp, TimeWarp>(a, b); }
 
 /// A smooth random warp; the logarithm of its slope is a sum of four cosines with amplitudes about strength / k.
 inline TimeWarp random_warp(std::uint64_t seed, double strength) {
@@ -148,6 +158,30 @@ inline TimeWarp random_warp(std::uint64_t seed, double strength) {
       u[i] += amplitude * std::cos(k * pi * double(i) / double(u.size() - 1) + phase);
   }
   return TimeWarp::from_log_slope(u);
+}
+
+/// A smooth random warp whose slopes reach from min_slope to max_slope, both within the table's resolution.
+/// The logarithm of the slope is a sum of four cosines of random phases and amplitudes, bent so that the ends are kept.
+/// throws   InvalidArgument unless 0 < min_slope < 1 < max_slope
+inline TimeWarp random_time_warp(std::uint64_t seed, double min_slope, double max_slope) {
+  require(min_slope > 0 && min_slope < 1 && max_slope > 1 && std::isfinite(max_slope), "random_time_warp: slopes from ",
+          min_slope, " to ", max_slope, ", give positive ones on either side of 1");
+  Eigen::ArrayXd u = random_warp(seed, 1).slopes().array().log();
+  u = (u - u.minCoeff()) / (u.maxCoeff() - u.minCoeff());
+  // u -> (e^(b u) - 1) / (e^b - 1) keeps 0 and 1; the mean slope falls from max to min as b rises, and must be 1.
+  const double range = std::log(max_slope / min_slope);
+  const auto log_slope = [&](double b) -> Eigen::VectorXd {
+    if (std::abs(b) < 1e-9) return range * u;
+    return range / std::expm1(b) * u.unaryExpr([b](double x) { return std::expm1(b * x); });
+  };
+  double low = -50, high = 50;
+  for (int step = 0; step < 60; ++step) {
+    const double b = (low + high) / 2;
+    const Eigen::ArrayXd rate = min_slope * log_slope(b).array().exp();
+    const double mean = (rate.sum() - (rate[0] + rate[rate.size() - 1]) / 2) / double(rate.size() - 1);
+    (mean > 1 ? low : high) = b;
+  }
+  return TimeWarp::from_log_slope(log_slope((low + high) / 2));
 }
 
 /// The mean of warps on the Hilbert sphere of psi = sqrt(zeta'): the Karcher mean of the psi, squared and integrated.

@@ -19,7 +19,8 @@ struct RegistrationOptions {
   int velocities = 128;   ///< intervals at which its velocity is evaluated
 };
 
-/// The second moving surface F2 is brought to the first by O F2(gamma(s), zeta(t)).
+/// The second moving surface F2 is brought to the first by O F2(gamma(s), temporal.second_time(t)), which stands beside
+/// F1(s, temporal.first_time(t)): zeta(t) and t, except in partial and cyclic alignment.
 struct MovingRegistration {
   SpatialResult spatial;
   TemporalResult temporal;
@@ -76,9 +77,9 @@ inline Curve shape_curve(const SurfaceSamples& samples, const FunctionalPca& pca
 
 namespace detail {
 
-/// Projections of O F(gamma(s), zeta(t)) on harmonics at equidistant times t.
-template <AnimatedSurface F>
-std::vector<HarmonicSurface> harmonic_stack(const F& surface, const SpatialResult& registration, const TimeWarp& zeta,
+/// Projections of O F(gamma(s), time(t)) on harmonics at equidistant t.
+template <AnimatedSurface F, class Time>
+std::vector<HarmonicSurface> harmonic_stack(const F& surface, const SpatialResult& registration, const Time& time,
                                             const RegistrationOptions& options) {
   const int times = std::max(1, options.spatial_times), degree = surface_degree(options.spatial);
   const SphereQuadrature q = projection_nodes(degree);
@@ -86,7 +87,7 @@ std::vector<HarmonicSurface> harmonic_stack(const F& surface, const SpatialResul
   std::vector<HarmonicSurface> stack(std::size_t(times), HarmonicSurface(Eigen::MatrixX3d::Zero(1, 3)));
   parallel_for(times, options.spatial.threads, [&](int k) {
     const double t = times > 1 ? double(k) / (times - 1) : 0.0;
-    const Mat3X values = registration.rotation * positions(surface, y, zeta(t));
+    const Mat3X values = registration.rotation * positions(surface, y, time(t));
     stack[std::size_t(k)] = project_on_harmonics(values, q, degree);
   });
   return stack;
@@ -100,10 +101,12 @@ template <AnimatedSurface F1, AnimatedSurface F2>
 MovingRegistration register_moving(const F1& first, const F2& second, const TriangleMesh& sphere,
                                    const RegistrationOptions& options = {}, const Progress& progress = {}) {
   MovingRegistration result;
-  const auto target = detail::harmonic_stack(first, {}, {}, options);
+  const auto first_time = [&](double t) { return result.temporal.first_time(t); };
+  const auto second_time = [&](double t) { return result.temporal.second_time(t); };
   const SurfaceSamples target_samples = sample(first, {}, sphere.vertices, options);
   for (int round = 0; round < std::max(1, options.rounds); ++round) {
-    const auto moved = detail::harmonic_stack(second, result.spatial, result.temporal.warp, options);
+    const auto target = detail::harmonic_stack(first, {}, first_time, options);
+    const auto moved = detail::harmonic_stack(second, result.spatial, second_time, options);
     result.spatial = round == 0 ? register_harmonic(target, moved, options.spatial, progress)
                                 : refine_harmonic(target, moved, result.spatial, options.spatial, progress);
     const std::vector<SurfaceSamples> samples{target_samples, sample(second, result.spatial, sphere.vertices, options)};

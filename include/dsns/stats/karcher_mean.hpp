@@ -67,6 +67,9 @@ inline KarcherMean karcher_mean(const std::vector<Curve>& curves, const KarcherO
     if (squared_norm(aligned.q[i] - aligned.mean, grid) < squared_norm(aligned.q[nearest] - aligned.mean, grid))
       nearest = i;
   Eigen::MatrixXd target = aligned.q[nearest];
+  TemporalOptions temporal = options.temporal;
+  temporal.alignment = TemporalAlignment::whole;  // a mean of all of them
+  temporal.search_grid = 0;                       // nobody is there to be advised
   const Eigen::VectorXd no_start = Eigen::VectorXd::Zero(curves.front().dimension());
 
   for (int iteration = 0; iteration < options.iterations && !result.summary.converged; ++iteration) {
@@ -75,7 +78,7 @@ inline KarcherMean karcher_mean(const std::vector<Curve>& curves, const KarcherO
     std::vector<TimeWarp> warps(curves.size());
     parallel_for(static_cast<int>(curves.size()), options.threads, [&](int k) {
       const auto i = std::size_t(k);
-      warps[i] = register_temporally(mean_curve, curves[i], options.temporal).warp;
+      warps[i] = register_temporally(mean_curve, curves[i], temporal).warp;
       const auto miss = [&](const TimeWarp& w) { return squared_norm(target - warped_srvf(curves[i], w, grid), grid); };
       if (miss(result.warps[i]) < miss(warps[i])) warps[i] = result.warps[i];
     });

@@ -1,0 +1,138 @@
+// evaluate temporal --pairs: sequences brought to the pace of others.
+#include "temporal_experiments.hpp"
+
+#include "registration.hpp"
+#include "temporal_curves.hpp"
+#include "temporal_events.hpp"
+
+#include <dsns/elastic/temporal_registration.hpp>
+#include <dsns/io/source_name.hpp>
+#include <dsns/surface/sampled.hpp>
+
+#include <array>
+#include <iostream>
+
+namespace dsns::program {
+
+namespace {
+
+bool same_triangles(const Body& a, const Body& b) {
+  return a.sphere.faces.cols() == b.sphere.faces.cols() && a.sphere.faces == b.sphere.faces;
+}
+
+/// Times at which both bodies do the same.
+struct Events {
+  std::vector<std::array<double, 2>> times;
+};
+
+Events common_strikes(const Body& a, const Body& b) {
+  const auto first = foot_strikes(a), second = foot_strikes(b);
+  Events out;
+  for (const std::size_t k : {0u, 1u})
+    if (first[k] && second[k]) out.times.push_back({*first[k], *second[k]});
+  return out;
+}
+
+/// All methods on two curves; with the warp that was applied to the second, if the two should agree without it.
+void compare_pair(const PairRow& names, const Curve& first, const Curve& second, const TimeWarp* truth,
+                  const Events& events, std::vector<PairRow>& rows) {
+  const Moving moving(first);
+  const auto add = [&](const std::string& method, int samples, const auto& warp, double seconds) {
+    PairRow row = names;
+    row.method = method;
+    row.samples = samples;
+    row.distance = std::sqrt(elastic_energy(first, second, warp));
+    if (truth != nullptr) row.timing = moving.miss(warp, *truth);
+    if (truth == nullptr && !events.times.empty()) {
+      double sum = 0;
+      for (const auto& [t1, t2] : events.times) sum += std::abs(warp(t1) - t2);
+      row.strikes = sum / double(events.times.size());
+    }
+    row.seconds = seconds;
+    rows.push_back(row);
+  };
+  add("before", 0, TimeWarp(), 0);
+  for (const int samples : {25, 50, 200}) {
+    const Stopwatch dp;
+    const auto path = dynamic_programming_warp(first, second, {.samples = samples});
+    add("dp", samples, path, dp.seconds());
+  }
+  const Stopwatch ours;
+  const TemporalResult r = register_temporally(first, second);
+  add("ours", 0, r.warp, ours.seconds());
+}
+
+void compare_bodies(const Body& a, const Body& b, const std::string& name_a, const std::string& name_b,
+                    const Settings& settings, const TemporalEvaluation& evaluation, std::vector<PairRow>& rows) {
+  const Mat3X y = points_of(a, settings);
+  std::vector<SurfaceSamples> samples{samples_at(a.surface, y, Mat3::Identity(), 48)};
+  const bool same = same_triangles(a, b);
+  if (same) {  // vertex i of one is vertex i of the other
+    samples.push_back(samples_at(AnyAnimatedSurface(SampledSurface(b.normalized.sequence, a.sphere.vertices)), y,
+                                 Mat3::Identity(), 48));
+  } else {
+    ProgressLine line;
+    Settings told = settings;
+    told.frames = 32;
+    const SpatialResult s = register_bodies(a, b, told, std::ref(line)).spatial;
+    samples.push_back(samples_at(b.surface, s.gamma(y), s.rotation, 48));
+  }
+  const FunctionalPca pca = basis_of(samples);
+  const Curve first = shape_curve(samples[0], pca), second = shape_curve(samples[1], pca);
+  const PairRow names{name_a, name_b, {}, 0, 0, {}, {}, 0};
+  const std::string clip = parse_source(name_a).clip;
+  if (!same || clip.empty() || clip != parse_source(name_b).clip)
+    return compare_pair(names, first, second, nullptr, common_strikes(a, b), rows);
+  for (int k = 0; k < evaluation.warps; ++k) {
+    const TimeWarp truth = random_pace(evaluation, k, settings);
+    compare_pair(names, first, warped(second, truth), &truth, {}, rows);
+  }
+}
+
+}  // namespace
+
+PairComparison compare_pairs(const std::vector<std::string>& names, const Settings& settings,
+                             const TemporalEvaluation& evaluation, Report& report) {
+  PairComparison out;
+  std::vector<std::optional<Body>> bodies;
+  const auto failed = [&](const std::string& name, const std::exception& error) {
+    ++out.failures;
+    std::cout << std::flush;
+    std::cerr << "dsns: " << name << ": " << error.what() << '\n';
+    report.row("failures");
+    report.note("file", name);
+    report.note("reason", std::string(error.what()));
+  };
+  for (const std::string& name : names) {
+    try {
+      ProgressLine line;
+      bodies.emplace_back(load_body(name, settings, report, std::ref(line)));
+    } catch (const Error& error) {
+      bodies.emplace_back();
+      failed(name, error);
+    }
+  }
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t j = i + 1; j < names.size(); ++j) {
+      if (!bodies[i] || !bodies[j]) continue;
+      try {
+        compare_bodies(*bodies[i], *bodies[j], names[i], names[j], settings, evaluation, out.rows);
+      } catch (const Error& error) {
+        failed(names[i] + " and " + names[j], error);
+      }
+    }
+  for (const PairRow& row : out.rows) {
+    report.row("rows");
+    report.note("file", row.first);
+    report.note("second", row.second);
+    report.note("method", row.method);
+    report.note("samples", std::int64_t(row.samples));
+    report.note("distance", row.distance);
+    if (row.timing) report.note("timing", *row.timing);
+    if (row.strikes) report.note("foot_strikes", *row.strikes);
+    report.note("seconds", row.seconds);
+  }
+  return out;
+}
+
+}  // namespace dsns::program
