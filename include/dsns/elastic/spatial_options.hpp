@@ -13,7 +13,13 @@ namespace dsns {
 enum class RotationSearch {
   full,     ///< any turn of the body and any turn of its sphere: for one body, or bodies placed at will
   upright,  ///< bodies stand alike (same up, same heading): turns of the sphere only, scored on positions
-  none,     ///< the surfaces correspond roughly already: start from the identity
+  none,     ///< the surfaces correspond roughly already: begin at SpatialOptions::start
+};
+
+/// A registration to start from: O and gamma as in SpatialResult.
+struct SpatialStart {
+  Mat3 rotation = Mat3::Identity();
+  SphereDiffeomorphism gamma;
 };
 
 /// One stage, coarse to fine: fields of `field_degree` move surfaces cut at `surface_degree` and smoothed by the heat kernel.
@@ -26,14 +32,17 @@ struct SpatialLevel {
 
 struct SpatialOptions {
   RotationSearch search = RotationSearch::full;
-  std::vector<SpatialLevel> levels = {{1, 6, 0.05, 0.5},  {2, 6, 0.05, 0.5},   {3, 8, 0.03, 0.5}, {4, 8, 0.02, 0.5},
-                                      {6, 10, 0.01, 0.5}, {8, 12, 0.004, 0.5}, {10, 16, 0.0, 0.5}};
+  std::vector<SpatialLevel> levels = {
+      {1, 6, 0.05, 0.5}, {2, 6, 0.05, 0.5}, {4, 8, 0.02, 0.5}, {8, 12, 0.004, 0.5}, {14, 20, 0.0, 0.5}};
+  SpatialStart start;  ///< with RotationSearch::none; what can be no better than it is given back
   int steps_per_level = 8;
-  int latitudes = 24;              ///< quadrature of latitudes x 2 latitudes nodes
-  int rotations = 600;             ///< candidates of the search
-  int refined = 5;                 ///< best candidates that are refined before one is chosen
-  double damping = 1e-3;           ///< times (l(l + 1))^2: what a field of degree l must gain to be used
-  double tolerance = 1e-3;         ///< a level ends when a step lowers the energy by less than this share of it
+  int rounds = 2;            ///< of register_spatially; each further one compares the surfaces as registered so far
+  int refinement_steps = 2;  ///< per level in further rounds
+  int latitudes = 24;        ///< quadrature of latitudes x 2 latitudes nodes
+  int rotations = 600;       ///< candidates of the search
+  int refined = 16;          ///< best candidates, 30 degrees apart, that are refined before one is chosen
+  double damping = 1e-3;     ///< times (l(l + 1))^2: what a field of degree l must gain to be used
+  double tolerance = 1e-3;   ///< a level ends when a step lowers the energy by less than this share of it
   double min_step_jacobian = 0.3;  ///< of a single increment
   double min_jacobian = 0.02;      ///< of the composition, at the quadrature nodes
   double longest_step = 0.8;       ///< radians
@@ -56,7 +65,7 @@ inline SphereQuadrature masked(SphereQuadrature q, const SpatialOptions& options
 /// Energies are |h1 - O (h2 * gamma)|^2 of the SRNFs h at the last level's degree, squared length unit, whatever weight the
 /// levels give to positions.
 struct SpatialSummary {
-  double energy_before = 0;  ///< at the identity
+  double energy_before = 0;  ///< at the identity, or at the start if one was given
   double energy_after = 0;
   double norm = 0;          ///< |h1|^2, to compare the energies with
   double min_jacobian = 1;  ///< over a grid four times finer than the fields' bandwidth
