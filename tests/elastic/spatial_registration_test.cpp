@@ -36,6 +36,8 @@ SpatialOptions quick() {
   o.latitudes = 14;
   o.rotations = 150;
   o.refined = 3;
+  o.rounds = 1;
+  o.refinement_steps = 8;
   return o;
 }
 
