@@ -33,16 +33,17 @@ struct SpatialLevel {
 struct SpatialOptions {
   RotationSearch search = RotationSearch::full;
   std::vector<SpatialLevel> levels = {
-      {1, 6, 0.05, 0.5}, {2, 6, 0.05, 0.5}, {4, 8, 0.02, 0.5}, {8, 12, 0.004, 0.5}, {14, 20, 0.0, 0.5}};
+      {1, 6, 0.05, 0.5}, {2, 6, 0.05, 0.5}, {4, 8, 0.02, 0.5}, {6, 12, 0.004, 0.5}, {8, 16, 0.0, 0.5}};
+  /// Afterwards, on surfaces that are warped before they are projected; empty: no refinement.
+  std::vector<SpatialLevel> refinement = {{10, 12, 0.0, 0.5}, {14, 16, 0.0, 0.5}};
   SpatialStart start;  ///< with RotationSearch::none; what can be no better than it is given back
   int steps_per_level = 8;
-  int rounds = 2;            ///< of register_spatially; each further one compares the surfaces as registered so far
-  int refinement_steps = 2;  ///< per level in further rounds
-  int latitudes = 24;        ///< quadrature of latitudes x 2 latitudes nodes
-  int rotations = 600;       ///< candidates of the search
-  int refined = 16;          ///< best candidates, 30 degrees apart, that are refined before one is chosen
-  double damping = 1e-3;     ///< times (l(l + 1))^2: what a field of degree l must gain to be used
-  double tolerance = 1e-3;   ///< a level ends when a step lowers the energy by less than this share of it
+  int refinement_steps = 3;        ///< per level of the refinement
+  int latitudes = 24;              ///< quadrature of latitudes x 2 latitudes nodes
+  int rotations = 600;             ///< candidates of the search
+  int refined = 16;                ///< best candidates, 30 degrees apart, that are refined before one is chosen
+  double damping = 1e-3;           ///< times (l(l + 1))^2: what a field of degree l must gain to be used
+  double tolerance = 1e-3;         ///< a level ends when a step lowers the energy by less than this share of it
   double min_step_jacobian = 0.3;  ///< of a single increment
   double min_jacobian = 0.02;      ///< of the composition, at the quadrature nodes
   double longest_step = 0.8;       ///< radians
