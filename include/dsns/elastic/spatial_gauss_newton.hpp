@@ -79,7 +79,9 @@ class SpatialProblem {
   }
 
   double energy(const Particles& p) const {
-    const Eigen::MatrixXd moved = p.field.g * p.J.cwiseSqrt().asDiagonal();
+    const Eigen::MatrixXd moved = options_->action == FieldAction::half_density
+                                      ? Eigen::MatrixXd(p.field.g * p.J.cwiseSqrt().asDiagonal())
+                                      : p.field.g;
     return (target_ - rotate_blocks(p.O, moved)).colwise().squaredNorm() * weights_;
   }
 
@@ -109,7 +111,8 @@ inline NormalEquations SpatialProblem::linearise(const Particles& p, const Chart
   std::vector<Eigen::VectorXd> rights(matrices.size());
   NormalEquations system{{}, {}, degree};
   const Eigen::ArrayXd l = harmonic_degrees(degree).tail(count);
-  const Eigen::RowVectorXd half_divergence = -0.5 * (l * (l + 1)).matrix().transpose();
+  const bool half_density = options_->action == FieldAction::half_density;
+  const Eigen::RowVectorXd half_divergence = (half_density ? -0.5 : 0.0) * (l * (l + 1)).matrix().transpose();
   for_chunks(n, [&](int chunk, Index first, Index points) {
     using PointByPoint = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const auto basis = harmonic_tangents<PointByPoint>(
@@ -127,10 +130,10 @@ inline NormalEquations SpatialProblem::linearise(const Particles& p, const Chart
       B.row(2).head(count) = basis.yv.row(at).tail(count);
       B.row(2).segment(count, count) = basis.yu.row(at).tail(count);
       const Eigen::MatrixXd U = columns(p.field, i);
-      const double root = std::sqrt(p.J[i]);
+      const double root = half_density ? std::sqrt(p.J[i]) : 1.0;
       const Eigen::VectorXd residual = target.col(i) - root * p.field.g.col(i);
       right += weights_[i] * root * (B.transpose() * (U.transpose() * residual));
-      Matrix6 gram = weights_[i] * p.J[i] * (U.transpose() * U);
+      Matrix6 gram = weights_[i] * root * root * (U.transpose() * U);
       gram.diagonal().array() += 1e-14 * gram.trace();
       rows.middleRows(6 * (i - first), 6).noalias() = upper_root(gram) * B;
     }

@@ -16,6 +16,12 @@ enum class RotationSearch {
   none,     ///< the surfaces correspond roughly already: begin at SpatialOptions::start
 };
 
+/// How gamma acts on fields in the first levels. The refinement warps the surfaces themselves.
+enum class FieldAction {
+  half_density,  ///< sqrt(J) h(gamma), which keeps the norm and is the field of the warped surface
+  as_published,  ///< h(gamma), without the factor: for comparison
+};
+
 /// A registration to start from: O and gamma as in SpatialResult.
 struct SpatialStart {
   Mat3 rotation = Mat3::Identity();
@@ -37,8 +43,9 @@ struct SpatialOptions {
   /// Afterwards, on surfaces that are warped before they are projected; empty: no refinement.
   std::vector<SpatialLevel> refinement = {{10, 12, 0.0, 0.5}, {14, 16, 0.0, 0.5}};
   SpatialStart start;  ///< with RotationSearch::none; what can be no better than it is given back
+  FieldAction action = FieldAction::half_density;
   int steps_per_level = 8;
-  int refinement_steps = 3;        ///< per level of the refinement
+  int refinement_steps = 2;        ///< per level of the refinement
   int latitudes = 24;              ///< quadrature of latitudes x 2 latitudes nodes
   int rotations = 600;             ///< candidates of the search
   int refined = 16;                ///< best candidates, 30 degrees apart, that are refined before one is chosen

@@ -10,6 +10,8 @@
 #include <dsns/mesh/sphere_topology.hpp>
 #include <dsns/mesh/surface_walk.hpp>
 
+#include <numeric>
+
 namespace dsns {
 
 struct RemeshOptions {
@@ -187,12 +189,21 @@ inline Remeshing isotropic_remesh(const TriangleMesh& mesh, const RemeshOptions&
   return remesher.result();
 }
 
-/// The motion of the given mesh on the new triangles. Faces that close holes are no longer told apart.
+/// The motion of the given mesh on the new triangles. Those with all corners on faces that close holes close holes.
 inline MeshSequence remeshed(const MeshSequence& sequence, const Remeshing& remeshing) {
   MeshSequence out;
-  out.faces = remeshing.mesh.faces;
   out.duration = sequence.duration;
   out.name = sequence.name;
+  const Index first_cap = sequence.faces.cols() - sequence.cap_faces;
+  std::vector<Index> order(std::size_t(remeshing.mesh.faces.cols()));
+  std::iota(order.begin(), order.end(), 0);
+  const auto caps = std::stable_partition(order.begin(), order.end(), [&](Index f) {
+    return (remeshing.mesh.faces.col(f).array().unaryExpr(
+                [&](int v) { return remeshing.places[std::size_t(v)].face < first_cap ? 1 : 0; }))
+        .any();
+  });
+  out.faces = remeshing.mesh.faces(Eigen::all, order);
+  out.cap_faces = order.end() - caps;
   for (const Mat3X& frame : sequence.frames) {
     Mat3X x(3, Index(remeshing.places.size()));
     for (Index v = 0; v < x.cols(); ++v) x.col(v) = position(frame, sequence.faces, remeshing.places[std::size_t(v)]);
