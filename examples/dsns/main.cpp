@@ -1,5 +1,6 @@
 // dsns: elastic analysis of moving surfaces from the command line.
 #include "commands.hpp"
+#include "evaluations.hpp"
 #include "fits.hpp"
 
 #include <dsns/core/errors.hpp>
@@ -289,6 +290,62 @@ int main(int argc, char** argv) {
     settings.seconds = 5;
     settings.representation = Representation::neural;
   });
+
+  SpatialEvaluation spatial;
+  CLI::App* spatial_command =
+      command_of(evaluate_command, "spatial", "find known warps and turns of each animation again", [&] {
+        check_output(spatial.csv.string(), "");
+        check_output(spatial.markdown.string(), "");
+        unusable = evaluate_spatial(sources, settings, spatial, report);
+      });
+  spatial_command->add_option("FILES", sources, "animations")->required()->expected(1, 10000);
+  spatial_command->add_option("--degrees", spatial.degrees, "sizes of the warps, degrees in the root mean square")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 28.0));
+  spatial_command->add_option("--warps", spatial.warps, "warps of each size")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  spatial_command->add_option("--warp-degree", spatial.warp_degree, "of the fields that warp")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 12));
+  add_choice(spatial_command, "--second-map", spatial.map, {{"own", SecondMap::own}, {"again", SecondMap::again}},
+             "own: both share their sphere map; again: the second is mapped anew, its vertices in another order");
+  spatial_command->add_option("--without", spatial.without, "parts of the registration to leave out, for comparison")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"jacobian", "smoothing", "positions", "refinement"}));
+  spatial_command->add_option("--csv", spatial.csv, "write the table to this file");
+  spatial_command->add_option("--markdown", spatial.markdown, "likewise");
+  add_choice(spatial_command, "--surface", settings.representation,
+             {{"sampled", Representation::sampled}, {"neural", Representation::neural}},
+             "sampled: the mesh itself; neural: fits to it, of either side with a seed of its own");
+  add_fit(spatial_command, settings);
+
+  CorrespondenceEvaluation correspondence;
+  CLI::App* correspondence_command =
+      command_of(evaluate_command, "correspondence",
+                 "match two bodies whose vertices correspond by number, which is not shown", [&] {
+                   check_output(correspondence.markdown.string(), "");
+                   evaluate_correspondence(sources[0], sources[1], settings, correspondence, report);
+                 });
+  correspondence_command->add_option("FILES", sources, "two animations")->required()->expected(2);
+  std::string truth;
+  correspondence_command->add_option("--truth", truth, "what is true: identity, of the vertices' numbers")
+      ->required()
+      ->check(CLI::IsMember({"identity"}));
+  correspondence_command
+      ->add_option("--seeds", correspondence.seeds, "runs, each remeshed, turned and warped its own way")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100));
+  correspondence_command->add_option("--degrees", correspondence.degrees, "size of the warp, degrees rms")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 20.0));
+  correspondence_command->add_flag("--baselines", correspondence.baselines, "other methods too");
+  correspondence_command->add_flag("--refine", correspondence.refine,
+                                   "also the elastic refinement of the correspondence");
+  add_choice(correspondence_command, "--search", settings.search,
+             {{"upright", dsns::RotationSearch::upright}, {"full", dsns::RotationSearch::full}},
+             "of the others: upright: the bodies stand alike (same up, same heading); full: they lie at will");
+  correspondence_command->add_option("--markdown", correspondence.markdown, "write the table to this file");
 
   CLI::App* register_command =
       command("register", "bring the second animation into correspondence with the first", [&] {

@@ -24,6 +24,7 @@ RegistrationOptions quick() {
   RegistrationOptions o;
   o.spatial.search = RotationSearch::upright;
   o.spatial.levels = {{1, 6, 0.03, 0.5}, {2, 6, 0.02, 0.5}, {3, 8, 0.0, 0.0}};
+  o.spatial.refinement = {{4, 8, 0.0, 0.5}};
   o.spatial.latitudes = 12;
   o.spatial.rotations = 100;
   o.spatial.refined = 2;

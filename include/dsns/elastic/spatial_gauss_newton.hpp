@@ -2,11 +2,7 @@
 /// One stage of spatial registration: Gauss-Newton on vector spherical harmonics. Particles y_i = gamma(s_i) start on the
 /// quadrature's nodes; each step composes exp(v) on the left, so a step costs the same however many came before.
 #include <dsns/elastic/half_density.hpp>
-#include <dsns/elastic/spatial_options.hpp>
-
-#include <Eigen/Cholesky>
-#include <algorithm>
-#include <optional>
+#include <dsns/elastic/spatial_descent.hpp>
 
 namespace dsns {
 
@@ -51,45 +47,15 @@ class SpatialProblem {
   }
   double norm() const { return target_.colwise().squaredNorm() * weights_; }
 
-  /// Gauss-Newton with fields of one degree. Appends the accepted fields and energies.
   Particles minimise(Particles p, int degree, int steps, std::vector<SphereVectorField>& fields,
                      std::vector<double>& energies) const {
-    double damping = options_->damping;
-    for (int step = 0; step < steps; ++step) {
-      const ChartBatch charts = charts_at(p.y);
-      const NormalEquations system = linearise(p, degree);
-      std::optional<Particles> next;
-      SphereVectorField v = SphereVectorField::zero(degree);
-      for (int attempt = 0; attempt < 8 && !next; ++attempt) {
-        const Mat3 turn = solve(system, damping, v);
-        const SphereDisplacement moved = displace(v, charts);
-        const Eigen::VectorXd J = p.J.cwiseProduct(moved.J);
-        if (moved.J.minCoeff() >= options_->min_step_jacobian && J.minCoeff() >= options_->min_jacobian &&
-            moved.longest_step <= options_->longest_step) {
-          Particles trial = at(moved.y, J, p.O * turn);
-          if (trial.energy < p.energy) next = std::move(trial);
-        }
-        if (!next) damping = std::max(damping * 4, 1e-8);
-      }
-      if (!next) break;
-      const double gain = (p.energy - next->energy) / p.energy;
-      p = std::move(*next);
-      fields.push_back(std::move(v));
-      energies.push_back(p.energy);
-      damping = std::max(damping / 3, 1e-4 * options_->damping);
-      if (gain < options_->tolerance) break;
-    }
-    return p;
+    return descend(*this, std::move(p), degree, steps, *options_, fields, energies);
   }
+
+  NormalEquations linearise(const Particles& p, const ChartBatch& charts, int degree) const;
 
  private:
   static constexpr Index chunk_size = 128;  // points; a fixed number, so that sums do not depend on the thread count
-
-  struct NormalEquations {
-    Eigen::MatrixXd matrix;
-    Eigen::VectorXd right;
-    Eigen::ArrayXd degrees;  ///< l of each harmonic from degree 1
-  };
 
   template <class Body>
   void for_chunks(Index n, const Body& body) const {
@@ -113,50 +79,10 @@ class SpatialProblem {
   }
 
   double energy(const Particles& p) const {
-    const Eigen::MatrixXd moved = p.field.g * p.J.cwiseSqrt().asDiagonal();
+    const Eigen::MatrixXd moved = options_->action == FieldAction::half_density
+                                      ? Eigen::MatrixXd(p.field.g * p.J.cwiseSqrt().asDiagonal())
+                                      : p.field.g;
     return (target_ - rotate_blocks(p.O, moved)).colwise().squaredNorm() * weights_;
-  }
-
-  NormalEquations linearise(const Particles& p, int degree) const {
-    const Index count = harmonic_count(degree) - 1, unknowns = 2 * count + 3, n = p.y.cols();
-    const Eigen::MatrixXd target = rotate_blocks(p.O.transpose(), target_);
-    std::vector<Eigen::MatrixXd> matrices(std::size_t((n + chunk_size - 1) / chunk_size));
-    std::vector<Eigen::VectorXd> rights(matrices.size());
-    NormalEquations system{{}, {}, harmonic_degrees(degree).tail(count)};
-    const Eigen::RowVectorXd half_divergence = -0.5 * (system.degrees * (system.degrees + 1)).matrix().transpose();
-    for_chunks(n, [&](int chunk, Index first, Index points) {
-      using PointByPoint = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      const auto basis = harmonic_tangents<PointByPoint>(charts_at(p.y.middleCols(first, points)), degree);
-      Eigen::MatrixXd rows(6 * points, unknowns);
-      Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
-      Eigen::Matrix<double, 6, Eigen::Dynamic> B = Eigen::MatrixXd::Zero(6, unknowns);
-      B.rightCols<3>().bottomRows<3>().setIdentity();
-      for (Index i = first; i < first + points; ++i) {
-        const Index at = i - first;
-        B.row(0).head(count) = half_divergence.cwiseProduct(basis.y.row(at).tail(count));
-        B.row(1).head(count) = basis.yu.row(at).tail(count);
-        B.row(1).segment(count, count) = -basis.yv.row(at).tail(count);
-        B.row(2).head(count) = basis.yv.row(at).tail(count);
-        B.row(2).segment(count, count) = basis.yu.row(at).tail(count);
-        const Eigen::MatrixXd U = columns(p.field, i);
-        const double root = std::sqrt(p.J[i]);
-        const Eigen::VectorXd residual = target.col(i) - root * p.field.g.col(i);
-        right += weights_[i] * root * (B.transpose() * (U.transpose() * residual));
-        Matrix6 gram = weights_[i] * p.J[i] * (U.transpose() * U);
-        gram.diagonal().array() += 1e-14 * gram.trace();
-        rows.middleRows(6 * (i - first), 6).noalias() = upper_root(gram) * B;
-      }
-      auto& matrix = matrices[std::size_t(chunk)] = Eigen::MatrixXd::Zero(unknowns, unknowns);
-      matrix.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-      rights[std::size_t(chunk)] = std::move(right);
-    });
-    system.matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
-    system.right = Eigen::VectorXd::Zero(unknowns);
-    for (std::size_t chunk = 0; chunk < matrices.size(); ++chunk) {
-      system.matrix += matrices[chunk];
-      system.right += rights[chunk];
-    }
-    return system;
   }
 
   /// [g, g1, g2, e_x x g, e_y x g, e_z x g] of point i, components x 6.
@@ -172,25 +98,57 @@ class SpatialProblem {
     return U;
   }
 
-  /// Fills v with the damped step and returns its rotation, to be composed on the right of O.
-  static Mat3 solve(const NormalEquations& system, double damping, SphereVectorField& v) {
-    const Index count = system.degrees.size();
-    const Eigen::VectorXd penalty = (system.degrees * (system.degrees + 1)).square();
-    Eigen::MatrixXd matrix = system.matrix;
-    matrix.diagonal().head(count) += damping * penalty;
-    matrix.diagonal().segment(count, count) += damping * penalty;
-    matrix.diagonal().array() += 1e-10 * system.matrix.trace() / double(matrix.rows());
-    const Eigen::VectorXd x = matrix.selfadjointView<Eigen::Lower>().ldlt().solve(system.right);
-    v.a.tail(count) = x.head(count);
-    v.b.tail(count) = x.segment(count, count);
-    return rotation_exp(x.tail<3>());
-  }
-
   Eigen::MatrixXd target_;
   HalfDensityField second_;
   Eigen::VectorXd weights_;
   const SpatialOptions* options_;
 };
+
+inline NormalEquations SpatialProblem::linearise(const Particles& p, const ChartBatch& charts, int degree) const {
+  const Index count = harmonic_count(degree) - 1, unknowns = 2 * count + 3, n = p.y.cols();
+  const Eigen::MatrixXd target = rotate_blocks(p.O.transpose(), target_);
+  std::vector<Eigen::MatrixXd> matrices(std::size_t((n + chunk_size - 1) / chunk_size));
+  std::vector<Eigen::VectorXd> rights(matrices.size());
+  NormalEquations system{{}, {}, degree};
+  const Eigen::ArrayXd l = harmonic_degrees(degree).tail(count);
+  const bool half_density = options_->action == FieldAction::half_density;
+  const Eigen::RowVectorXd half_divergence = (half_density ? -0.5 : 0.0) * (l * (l + 1)).matrix().transpose();
+  for_chunks(n, [&](int chunk, Index first, Index points) {
+    using PointByPoint = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const auto basis = harmonic_tangents<PointByPoint>(
+        {charts.s.middleCols(first, points), charts.e1.middleCols(first, points), charts.e2.middleCols(first, points)},
+        degree);
+    Eigen::MatrixXd rows(6 * points, unknowns);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
+    Eigen::Matrix<double, 6, Eigen::Dynamic> B = Eigen::MatrixXd::Zero(6, unknowns);
+    B.rightCols<3>().bottomRows<3>().setIdentity();
+    for (Index i = first; i < first + points; ++i) {
+      const Index at = i - first;
+      B.row(0).head(count) = half_divergence.cwiseProduct(basis.y.row(at).tail(count));
+      B.row(1).head(count) = basis.yu.row(at).tail(count);
+      B.row(1).segment(count, count) = -basis.yv.row(at).tail(count);
+      B.row(2).head(count) = basis.yv.row(at).tail(count);
+      B.row(2).segment(count, count) = basis.yu.row(at).tail(count);
+      const Eigen::MatrixXd U = columns(p.field, i);
+      const double root = half_density ? std::sqrt(p.J[i]) : 1.0;
+      const Eigen::VectorXd residual = target.col(i) - root * p.field.g.col(i);
+      right += weights_[i] * root * (B.transpose() * (U.transpose() * residual));
+      Matrix6 gram = weights_[i] * root * root * (U.transpose() * U);
+      gram.diagonal().array() += 1e-14 * gram.trace();
+      rows.middleRows(6 * (i - first), 6).noalias() = upper_root(gram) * B;
+    }
+    auto& matrix = matrices[std::size_t(chunk)] = Eigen::MatrixXd::Zero(unknowns, unknowns);
+    matrix.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+    rights[std::size_t(chunk)] = std::move(right);
+  });
+  system.matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  system.right = Eigen::VectorXd::Zero(unknowns);
+  for (std::size_t chunk = 0; chunk < matrices.size(); ++chunk) {
+    system.matrix += matrices[chunk];
+    system.right += rights[chunk];
+  }
+  return system;
+}
 
 }  // namespace detail
 }  // namespace dsns

@@ -13,7 +13,19 @@ namespace dsns {
 enum class RotationSearch {
   full,     ///< any turn of the body and any turn of its sphere: for one body, or bodies placed at will
   upright,  ///< bodies stand alike (same up, same heading): turns of the sphere only, scored on positions
-  none,     ///< the surfaces correspond roughly already: start from the identity
+  none,     ///< the surfaces correspond roughly already: begin at SpatialOptions::start
+};
+
+/// How gamma acts on fields in the first levels. The refinement warps the surfaces themselves.
+enum class FieldAction {
+  half_density,  ///< sqrt(J) h(gamma), which keeps the norm and is the field of the warped surface
+  as_published,  ///< h(gamma), without the factor: for comparison
+};
+
+/// A registration to start from: O and gamma as in SpatialResult.
+struct SpatialStart {
+  Mat3 rotation = Mat3::Identity();
+  SphereDiffeomorphism gamma;
 };
 
 /// One stage, coarse to fine: fields of `field_degree` move surfaces cut at `surface_degree` and smoothed by the heat kernel.
@@ -26,12 +38,17 @@ struct SpatialLevel {
 
 struct SpatialOptions {
   RotationSearch search = RotationSearch::full;
-  std::vector<SpatialLevel> levels = {{1, 6, 0.05, 0.5},  {2, 6, 0.05, 0.5},   {3, 8, 0.03, 0.5}, {4, 8, 0.02, 0.5},
-                                      {6, 10, 0.01, 0.5}, {8, 12, 0.004, 0.5}, {10, 16, 0.0, 0.5}};
+  std::vector<SpatialLevel> levels = {
+      {1, 6, 0.05, 0.5}, {2, 6, 0.05, 0.5}, {4, 8, 0.02, 0.5}, {6, 12, 0.004, 0.5}, {8, 16, 0.0, 0.5}};
+  /// Afterwards, on surfaces that are warped before they are projected; empty: no refinement.
+  std::vector<SpatialLevel> refinement = {{10, 12, 0.0, 0.5}, {14, 16, 0.0, 0.5}};
+  SpatialStart start;  ///< with RotationSearch::none; what can be no better than it is given back
+  FieldAction action = FieldAction::half_density;
   int steps_per_level = 8;
+  int refinement_steps = 2;        ///< per level of the refinement
   int latitudes = 24;              ///< quadrature of latitudes x 2 latitudes nodes
   int rotations = 600;             ///< candidates of the search
-  int refined = 5;                 ///< best candidates that are refined before one is chosen
+  int refined = 16;                ///< best candidates, 30 degrees apart, that are refined before one is chosen
   double damping = 1e-3;           ///< times (l(l + 1))^2: what a field of degree l must gain to be used
   double tolerance = 1e-3;         ///< a level ends when a step lowers the energy by less than this share of it
   double min_step_jacobian = 0.3;  ///< of a single increment
@@ -56,7 +73,7 @@ inline SphereQuadrature masked(SphereQuadrature q, const SpatialOptions& options
 /// Energies are |h1 - O (h2 * gamma)|^2 of the SRNFs h at the last level's degree, squared length unit, whatever weight the
 /// levels give to positions.
 struct SpatialSummary {
-  double energy_before = 0;  ///< at the identity
+  double energy_before = 0;  ///< at the identity, or at the start if one was given
   double energy_after = 0;
   double norm = 0;          ///< |h1|^2, to compare the energies with
   double min_jacobian = 1;  ///< over a grid four times finer than the fields' bandwidth

@@ -14,7 +14,7 @@ struct RegistrationOptions {
   TemporalOptions temporal;
   PcaOptions pca;
   int spatial_times = 5;  ///< spatial registration compares the surfaces at this many times
-  int rounds = 2;         ///< each further round compares the surfaces as registered so far, in space and in time
+  int rounds = 2;         ///< each further round refines, in space and in time
   int snapshots = 32;     ///< times a sequence gives to the principal components
   int velocities = 128;   ///< intervals at which its velocity is evaluated
 };
@@ -77,23 +77,41 @@ inline Curve shape_curve(const SurfaceSamples& samples, const FunctionalPca& pca
 
 namespace detail {
 
-/// Projections of O F(gamma(s), time(t)) on harmonics at equidistant t.
-template <AnimatedSurface F, class Time>
-std::vector<HarmonicSurface> harmonic_stack(const F& surface, const SpatialResult& registration, const Time& time,
-                                            const RegistrationOptions& options) {
-  const int times = std::max(1, options.spatial_times), degree = surface_degree(options.spatial);
+/// Projections of a moving surface on harmonics at equidistant times.
+template <AnimatedSurface F>
+std::vector<HarmonicSurface> harmonic_stack(const F& surface, const RegistrationOptions& options) {
+  const int degree = surface_degree(options.spatial);
   const SphereQuadrature q = projection_nodes(degree);
-  const Mat3X y = registration.gamma(q.points);
-  std::vector<HarmonicSurface> stack(std::size_t(times), HarmonicSurface(Eigen::MatrixX3d::Zero(1, 3)));
-  parallel_for(times, options.spatial.threads, [&](int k) {
-    const double t = times > 1 ? double(k) / (times - 1) : 0.0;
-    const Mat3X values = registration.rotation * positions(surface, y, time(t));
-    stack[std::size_t(k)] = project_on_harmonics(values, q, degree);
-  });
+  const TimeWarp clock;
+  std::vector<HarmonicSurface> stack;
+  for (const Mat3X& values :
+       MovingStack<F, TimeWarp>{surface, clock, std::max(1, options.spatial_times), options.spatial.threads}.positions(
+           q.points))
+    stack.push_back(project_on_harmonics(values, q, degree));
   return stack;
 }
 
+/// With both on clocks of their own.
+template <AnimatedSurface F1, AnimatedSurface F2, class Time1, class Time2>
+SpatialResult refined(const F1& first, const F2& second, const SpatialResult& former, const Time1& first_time,
+                      const Time2& second_time, const RegistrationOptions& options, const Progress& progress) {
+  const int times = std::max(1, options.spatial_times), threads = options.spatial.threads;
+  return refine_registration(MovingStack<F1, Time1>{first, first_time, times, threads},
+                             MovingStack<F2, Time2>{second, second_time, times, threads}, former, options.spatial,
+                             progress);
+}
+
 }  // namespace detail
+
+/// Registers the second moving surface to the first in space alone: equal times correspond. Both should be centred and of mean
+/// area 1 (see normalize).
+template <AnimatedSurface F1, AnimatedSurface F2>
+SpatialResult register_in_space(const F1& first, const F2& second, const RegistrationOptions& options = {},
+                                const Progress& progress = {}) {
+  const SpatialResult found = register_harmonic(detail::harmonic_stack(first, options),
+                                                detail::harmonic_stack(second, options), options.spatial, progress);
+  return detail::refined(first, second, found, TimeWarp(), TimeWarp(), options, progress);
+}
 
 /// Registers the second moving surface to the first. Both should be centred and of mean area 1 (see normalize).
 /// sphere   unit vertices and triangles on which the surfaces are compared in time
@@ -105,10 +123,11 @@ MovingRegistration register_moving(const F1& first, const F2& second, const Tria
   const auto second_time = [&](double t) { return result.temporal.second_time(t); };
   const SurfaceSamples target_samples = sample(first, {}, sphere.vertices, options);
   for (int round = 0; round < std::max(1, options.rounds); ++round) {
-    const auto target = detail::harmonic_stack(first, {}, first_time, options);
-    const auto moved = detail::harmonic_stack(second, result.spatial, second_time, options);
-    result.spatial = round == 0 ? register_harmonic(target, moved, options.spatial, progress)
-                                : refine_harmonic(target, moved, result.spatial, options.spatial, progress);
+    if (round == 0)
+      result.spatial = register_harmonic(detail::harmonic_stack(first, options),
+                                         detail::harmonic_stack(second, options), options.spatial, progress);
+    else
+      result.spatial = detail::refined(first, second, result.spatial, first_time, second_time, options, progress);
     const std::vector<SurfaceSamples> samples{target_samples, sample(second, result.spatial, sphere.vertices, options)};
     const FunctionalPca pca = joint_pca(samples, sphere, options);
     result.temporal = register_temporally(shape_curve(samples[0], pca), shape_curve(samples[1], pca), options.temporal);

@@ -1,0 +1,41 @@
+#pragma once
+/// evaluate spatial and evaluate correspondence: registration against truths that are known.
+#include "bodies.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace dsns::program {
+
+enum class SecondMap {
+  own,    ///< the warped sequence and the one it is registered to share their sphere map
+  again,  ///< the latter is mapped anew, its vertices in another order
+};
+
+struct SpatialEvaluation {
+  std::vector<double> degrees{4, 6, 8.5};  ///< sizes of the warps, degrees rms
+  int warps = 1;                           ///< of each size
+  int warp_degree = 3;                     ///< of the fields
+  SecondMap map = SecondMap::own;
+  std::vector<std::string> without;  ///< parts to leave out: jacobian, smoothing, positions, refinement
+  std::filesystem::path csv, markdown;
+};
+/// Warps and turns every sequence by maps that are known and registers it back. With fitted surfaces both sides are fitted with
+/// seeds of their own.
+/// returns  how many sources could not be used
+int evaluate_spatial(const std::vector<std::string>& sources, const Settings& settings,
+                     const SpatialEvaluation& evaluation, Report& report);
+
+struct CorrespondenceEvaluation {
+  int seeds = 1;           ///< runs, each with its own remeshing, turn and warp
+  double degrees = 5;      ///< size of the warp, rms
+  bool baselines = false;  ///< also the schemes of the paper and of the released code
+  bool refine = false;     ///< also the elastic refinement from the correspondence
+  std::filesystem::path markdown;
+};
+/// Two bodies whose vertices correspond by number, which is not shown: the second is remeshed, its sphere turned and warped.
+void evaluate_correspondence(const std::string& first, const std::string& second, const Settings& settings,
+                             const CorrespondenceEvaluation& evaluation, Report& report);
+
+}  // namespace dsns::program
