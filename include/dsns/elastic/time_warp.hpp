@@ -8,6 +8,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -185,28 +186,32 @@ inline TimeWarp random_time_warp(std::uint64_t seed, double min_slope, double ma
 }
 
 /// The mean of warps on the Hilbert sphere of psi = sqrt(zeta'): the Karcher mean of the psi, squared and integrated.
+/// weights  one a warp, not negative, not all 0; empty: all alike
 /// source   Srivastava, Klassen 2016, section 7.5
-inline TimeWarp karcher_mean(const std::vector<TimeWarp>& warps) {
-  require(!warps.empty(), "karcher_mean: no warps, give at least one");
+inline TimeWarp karcher_mean(const std::vector<TimeWarp>& warps, std::vector<double> weights = {}) {
+  if (weights.empty()) weights.assign(warps.size(), 1);
+  const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+  require(!warps.empty() && weights.size() == warps.size() && total > 0, "karcher_mean: ", warps.size(), " warps and ",
+          weights.size(), " weights, give at least one warp and as many weights of a positive sum");
   const Index n = TimeWarp::default_intervals + 1;
   Eigen::VectorXd w = Eigen::VectorXd::Constant(n, 1 / double(n - 1));
   w[0] = w[n - 1] = 0.5 / double(n - 1);
   const auto inner = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.cwiseProduct(b).dot(w); };
   std::vector<Eigen::VectorXd> psi;
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
-  for (const auto& warp : warps) {
+  for (std::size_t i = 0; i < warps.size(); ++i) {
     Eigen::VectorXd p(n);
-    for (Index k = 0; k < n; ++k) p[k] = std::sqrt(std::max(warp.slope(double(k) / double(n - 1)), 0.0));
+    for (Index k = 0; k < n; ++k) p[k] = std::sqrt(std::max(warps[i].slope(double(k) / double(n - 1)), 0.0));
     p /= std::sqrt(inner(p, p));
-    mean += p;
+    mean += weights[i] / total * p;
     psi.push_back(std::move(p));
   }
   mean /= std::sqrt(inner(mean, mean));
   for (int step = 0; step < 50; ++step) {
     Eigen::VectorXd tangent = Eigen::VectorXd::Zero(n);
-    for (const auto& p : psi) {
-      const double c = std::clamp(inner(p, mean), -1.0, 1.0), angle = std::acos(c);
-      tangent += (p - c * mean) * (angle > 1e-8 ? angle / std::sin(angle) : 1.0) / double(psi.size());
+    for (std::size_t i = 0; i < psi.size(); ++i) {
+      const double c = std::clamp(inner(psi[i], mean), -1.0, 1.0), angle = std::acos(c);
+      tangent += (psi[i] - c * mean) * (angle > 1e-8 ? angle / std::sin(angle) : 1.0) * weights[i] / total;
     }
     const double length = std::sqrt(inner(tangent, tangent));
     if (length < 1e-13) break;
