@@ -36,11 +36,12 @@ struct Settings {
   RotationSearch search = RotationSearch::upright;
   TemporalAlignment alignment = TemporalAlignment::whole;
   Preset preset = Preset::general;
-  int steps = 0;           ///< of the fit; 0: the preset's
-  double seconds = 0;      ///< of the fit; 0: no limit
-  double target_msd = 0;   ///< ends the fit; 0: none
-  std::string checkpoint;  ///< file in which a fit keeps what it needs to go on; empty: none
-  bool resume = false;     ///< go on from it, where it is there
+  int steps = 0;            ///< of the fit; 0: the preset's
+  double seconds = 0;       ///< of the fit; 0: no limit
+  double target_msd = 0;    ///< ends the fit; 0: none
+  std::string checkpoint;   ///< file in which a fit keeps what it needs to go on; empty: none
+  bool resume = false;      ///< go on from it, where it is there
+  bool keep_going = false;  ///< leave out animations that cannot be used
 };
 
 /// A file's animation before anything is done to it.

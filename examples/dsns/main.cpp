@@ -95,17 +95,42 @@ void add_registration(CLI::App* command, Settings& settings) {
   add_fit(command, settings);
 }
 
-/// Reads the sources and, if the settings ask for networks, fits them.
-std::vector<Body> load(const std::vector<std::string>& sources, const Settings& settings, Report& report) {
+void about_groups(CLI::App* command, Settings& settings) {
+  command->add_flag("--keep-going", settings.keep_going, "leave out animations that cannot be used");
+  add_registration(command, settings);
+}
+
+/// Reads the sources and, if the settings ask for networks, fits them. Says which cannot be used, all of them: then it throws,
+/// or leaves them out where it may and `least` remain.
+std::vector<Body> load(const std::vector<std::string>& sources, const Settings& settings, Report& report,
+                       std::size_t least) {
   std::vector<Body> bodies;
+  std::vector<std::string> unusable;
   for (const auto& source : sources) {
-    ProgressLine line;
-    bodies.push_back(load_body(source, settings, report, std::ref(line)));
-    if (settings.representation == Representation::sampled) continue;
-    report.section("fit." + std::to_string(bodies.size()));
-    fit(bodies.back(), {}, settings, report);
-    report.section("");
+    try {
+      ProgressLine line;
+      Body body = load_body(source, settings, report, std::ref(line));
+      if (settings.representation != Representation::sampled && unusable.empty()) {
+        report.section("fit." + std::to_string(bodies.size() + 1));
+        fit(body, {}, settings, report);
+        report.section("");
+      }
+      bodies.push_back(std::move(body));
+    } catch (const dsns::Error& error) {
+      if (sources.size() <= 2) throw;
+      report.section("");
+      std::cerr << "dsns: " << error.what() << '\n';
+      unusable.push_back(source);
+    }
   }
+  if (unusable.empty()) return bodies;
+  report.note("left_out", unusable);
+  dsns::require<dsns::FileError>(
+      settings.keep_going, unusable.size(), " of ", sources.size(),
+      " animations cannot be used, see above: mend them, or leave them out with --keep-going");
+  dsns::require<dsns::FileError>(bodies.size() >= least, "only ", bodies.size(), " of ", sources.size(),
+                                 " animations can be used, ", least, " are needed");
+  report.figure("used", "animations that can be used", bodies.size());
   return bodies;
 }
 
@@ -182,7 +207,7 @@ int main(int argc, char** argv) {
     CLI::App* sub = parent->add_subcommand(name, what);
     sub->callback([&, run, name] {
       check_output(settings.json, "");
-      if (name != "demo" && name != "representation" && name != "temporal")
+      if (name != "demo" && name != "representation" && name != "temporal" && name != "modes")
         check_output(out, name == "fit" && dsns::lower_extension(out) == ".dsns" ? ".dsns" : ".glb");
       check_output(settings.checkpoint, ".dsns");
       check_output(overview, ".glb");
@@ -215,7 +240,7 @@ int main(int argc, char** argv) {
   CLI::App* fit_command = command("fit", "fit a surface that is a function of point and time to an animation", [&] {
     settings.representation = Representation::sampled;
     say_preset(settings, report);
-    std::vector<Body> bodies = load(sources, settings, report);
+    std::vector<Body> bodies = load(sources, settings, report, 1);
     fit(bodies[0], out, settings, report);
   });
   fit_command->add_option("FILE", sources, "the animation")->required()->expected(1);
@@ -349,7 +374,7 @@ int main(int argc, char** argv) {
 
   CLI::App* register_command =
       command("register", "bring the second animation into correspondence with the first", [&] {
-        const std::vector<Body> bodies = load(sources, settings, report);
+        const std::vector<Body> bodies = load(sources, settings, report, 2);
         register_two(bodies[0], bodies[1], out, own, settings, report);
       });
   register_command->add_option("FILES", sources, "two animations")->required()->expected(2);
@@ -364,7 +389,7 @@ int main(int argc, char** argv) {
   add_registration(register_command, settings);
 
   CLI::App* geodesic_command = command("geodesic", "the way from one animation to another, and their distance", [&] {
-    const std::vector<Body> bodies = load(sources, settings, report);
+    const std::vector<Body> bodies = load(sources, settings, report, 2);
     geodesic(bodies[0], bodies[1], out, steps, settings, report);
   });
   geodesic_command->add_option("FILES", sources, "two animations")->required()->expected(2);
@@ -375,7 +400,7 @@ int main(int argc, char** argv) {
   add_registration(geodesic_command, settings);
 
   CLI::App* mean_command = command("mean", "the mean of animations", [&] {
-    mean(load(sources, settings, report), out, overview, own, settings, report);
+    mean(load(sources, settings, report, 2), out, overview, own, settings, report);
   });
   mean_command->add_option("FILES", sources, "two animations or more; the first gives the triangles")
       ->required()
@@ -383,7 +408,54 @@ int main(int argc, char** argv) {
   mean_command->add_option("-o,--output", out, "write the mean to this GLB");
   mean_command->add_option("--overview", overview, "write all, registered, with the mean last, to this GLB");
   add_own_mesh(mean_command);
-  add_registration(mean_command, settings);
+  about_groups(mean_command, settings);
+
+  Study study;
+  const auto add_study = [&](CLI::App* sub) {
+    sub->add_option("FILES", sources, "three animations or more; the first gives the triangles")
+        ->required()
+        ->expected(3, 1000);
+    add_choice(sub, "--part", study.part,
+               {{"all", dsns::MotionPart::all},
+                {"start", dsns::MotionPart::start},
+                {"shape", dsns::MotionPart::shape},
+                {"pace", dsns::MotionPart::pace}},
+               "what is compared: start: the first pose; shape: how it changes; pace: when; all: these together");
+    about_groups(sub, settings);
+  };
+  const auto add_modes = [&](CLI::App* sub, const std::string& what) {
+    sub->add_option("--modes", study.modes, what)->capture_default_str()->check(CLI::Range(1, 1000));
+  };
+  const auto add_csv = [&](CLI::App* sub) { sub->add_option("--csv", study.csv, "write the table to this file"); };
+
+  CLI::App* modes_command = command("modes", "how animations vary around their mean", [&] {
+    check_output(study.csv.string(), "");
+    study.out = out;
+    modes(load(sources, settings, report, 3), study, settings, report);
+  });
+  modes_command->add_option("-o,--output", out, "folder for an animation of each mode");
+  add_modes(modes_command, "modes that are written");
+  add_csv(modes_command);
+  add_study(modes_command);
+
+  CLI::App* sample_command = command("sample", "random new members of a group of animations", [&] {
+    sample_bodies(load(sources, settings, report, 3), study, out, settings, report);
+  });
+  sample_command->add_option("-o,--output", out, "write them to this GLB, side by side");
+  sample_command->add_option("--count", study.samples, "how many")->capture_default_str()->check(CLI::Range(1, 1000));
+  add_modes(sample_command, "modes that they vary along");
+  add_study(sample_command);
+
+  CLI::App* distances_command = command("distances", "who is near whom, and what labels or a number explain", [&] {
+    check_output(study.csv.string(), "");
+    distances(load(sources, settings, report, 3), study, settings, report);
+  });
+  distances_command->add_option("--labels", study.labels, "one word for each animation, with commas between")
+      ->delimiter(',');
+  distances_command->add_option("--covariate", study.covariate, "one number for each animation, with commas between")
+      ->delimiter(',');
+  add_csv(distances_command);
+  add_study(distances_command);
 
   CLI::App* demo_command = command("demo", "the whole chain; without files, on three bodies that it makes",
                                    [&] { demo(sources, out.empty() ? "demo" : out, settings, report); });

@@ -87,14 +87,15 @@ TEST_CASE("the mean of two sizes of a body has the size between", "[stats]") {
   options.karcher.temporal = options.registration.temporal;
   options.karcher.iterations = 3;
   const TriangleMesh sphere = icosphere(2);
-  const MovingMean m = mean_of_moving(bodies, sphere, 5, options);
-  REQUIRE(m.frames.size() == 5);
+  const MovingMean m = mean_of_moving(bodies, sphere, options);
+  const std::vector<Mat3X> frames = m.frames(5);
+  REQUIRE(frames.size() == 5);
   const auto& energy = m.curves.summary.energy;
   for (std::size_t k = 1; k < energy.size(); ++k) CHECK(energy[k] <= energy[k - 1]);
   CHECK(energy.back() < energy.front());
   const LimbedBody middle = some_body(1, 0);
   const double wanted = area({positions(middle, sphere.vertices, 0), sphere.faces});
-  CHECK(area({m.frames.front(), sphere.faces}) == Approx(wanted).epsilon(0.02));
+  CHECK(area({frames.front(), sphere.faces}) == Approx(wanted).epsilon(0.02));
 }
 
 TEST_CASE("samples, components and curves fit together", "[stats]") {
@@ -113,7 +114,8 @@ TEST_CASE("samples, components and curves fit together", "[stats]") {
 }
 
 TEST_CASE("a mean of nothing is refused", "[stats]") {
-  CHECK_THROWS_AS(mean_of_moving(std::vector<LimbedBody>{}, icosphere(0), 5), InvalidArgument);
+  CHECK_THROWS_AS(mean_of_moving(std::vector<LimbedBody>{}, icosphere(0)), InvalidArgument);
+  CHECK_THROWS_AS(mean_of_moving(std::vector<LimbedBody>(1), icosphere(2)).frames(1), InvalidArgument);
 }
 
 }  // namespace moving_mean_test

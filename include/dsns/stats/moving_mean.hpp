@@ -14,37 +14,40 @@ struct MovingMeanOptions {
 
 struct MovingMean {
   std::vector<MovingRegistration> registrations;  ///< of every surface to the first; the first's own is the identity
-  std::vector<double> pca_variances;
-  double pca_residual = 0;    ///< mean squared coordinate error of the components
-  KarcherMean curves;         ///< its warps take every surface to the mean's clock
-  std::vector<Mat3X> frames;  ///< the mean at equidistant times on the vertices of the sphere mesh
+  FunctionalPca pca;                              ///< of all, registered in space
+  std::vector<Curve> members;                     ///< the surfaces in its components, on their own clocks
+  KarcherMean curves;                             ///< its warps take every surface to the mean's clock
+
+  /// Points of a curve on the grid of time_grid() as frames at equidistant times on the vertices of the sphere mesh.
+  std::vector<Mat3X> frames(const Eigen::MatrixXd& points, int count) const {
+    require(count >= 2, "MovingMean: ", count, " frames, give at least two");
+    std::vector<Mat3X> out;
+    for (int k = 0; k < count; ++k) out.push_back(pca.reconstruct(interpolate(points, double(k) / (count - 1))));
+    return out;
+  }
+  /// The mean's.
+  std::vector<Mat3X> frames(int count) const {
+    return frames(integrate_srvf(curves.start, curves.q, time_grid()), count);
+  }
 };
 
 /// surfaces  centred and of mean area 1 (see normalize), at least one
 /// sphere    unit vertices and triangles of the result
-/// frames    how many times the result is evaluated at, at least two
 template <AnimatedSurface F>
-MovingMean mean_of_moving(const std::vector<F>& surfaces, const TriangleMesh& sphere, int frames,
+MovingMean mean_of_moving(const std::vector<F>& surfaces, const TriangleMesh& sphere,
                           const MovingMeanOptions& options = {}, const Progress& progress = {}) {
-  require(!surfaces.empty() && frames >= 2, "mean_of_moving: ", surfaces.size(), " surfaces at ", frames,
-          " times, give at least one surface and two times");
-  MovingMean result;
+  require(!surfaces.empty(), "mean_of_moving: no surfaces, give at least one");
+  std::vector<MovingRegistration> registrations;
   std::vector<SurfaceSamples> samples;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    result.registrations.push_back(
-        i == 0 ? MovingRegistration{}
-               : register_moving(surfaces[0], surfaces[i], sphere, options.registration, progress));
-    samples.push_back(sample(surfaces[i], result.registrations[i].spatial, sphere.vertices, options.registration));
+    registrations.push_back(i == 0
+                                ? MovingRegistration{}
+                                : register_moving(surfaces[0], surfaces[i], sphere, options.registration, progress));
+    samples.push_back(sample(surfaces[i], registrations[i].spatial, sphere.vertices, options.registration));
   }
-  const FunctionalPca pca = joint_pca(samples, sphere, options.registration);
-  result.pca_variances.assign(pca.variances().begin(), pca.variances().end());
-  result.pca_residual = pca.residual();
-  std::vector<Curve> curves;
-  for (const auto& s : samples) curves.push_back(shape_curve(s, pca));
-  result.curves = karcher_mean(curves, options.karcher, progress);
-  const Eigen::MatrixXd points = integrate_srvf(result.curves.start, result.curves.q, time_grid());
-  for (int k = 0; k < frames; ++k)
-    result.frames.push_back(pca.reconstruct(interpolate(points, double(k) / (frames - 1))));
+  MovingMean result{std::move(registrations), joint_pca(samples, sphere, options.registration), {}, {}};
+  for (const auto& s : samples) result.members.push_back(shape_curve(s, result.pca));
+  result.curves = karcher_mean(result.members, options.karcher, progress);
   return result;
 }
 
