@@ -235,6 +235,72 @@ TEST_CASE("known warps of a motion are recovered, by all methods, and pairs are 
   check_refused(run(folder.path(), "evaluate temporal " + quoted(file("nowhere.glb"))), "nowhere.glb");
 }
 
+TEST_CASE("a group has modes, new members and distances; a broken file is left out where that is asked for",
+          "[program]") {
+  const test::TemporaryFolder folder;
+  const auto file = [&](const std::string& name) { return folder.path() / name; };
+  std::string files;
+  for (int i = 0; i < 4; ++i) {
+    LimbedBody body;
+    body.limbs = {{Vec3d(1, 0.5, 0).normalized(), 6, Vec3d(1, 0.4, 0), Vec3d(0, 0.4, 0.2)}};
+    if (i >= 2) body.axes = {1.3, 0.9, 1};
+    body.pace = 0.1 * (i % 2);
+    const auto path = file(std::string(1, char('a' + i)) + ".glb");
+    write_gltf(path, sequence_of(body, icosphere(2), 8));
+    files += " " + quoted(path);
+  }
+  const std::string quick = " --frames 8 --threads 2 --json " + quoted(file("r.json"));
+
+  const Run modes = run(folder.path(), "modes" + files + quick + " --modes 2 -o " + quoted(file("modes")) + " --csv " +
+                                           quoted(file("m.csv")));
+  INFO(modes.out << modes.err);
+  REQUIRE(modes.status == 0);
+  const std::string json = read(file("r.json"));
+  CHECK(count(json, "\"scores\": ") == 4);
+  for (const std::string key : {"compactness", "generalisation", "specificity"})
+    CHECK(count(json, "\"" + key + "\": ") == 1);
+  CHECK(count(read(file("m.csv")), "\n") == 5);
+  CHECK(read_gltf(file("modes") / "mode_1.glb", {"", 8}).sequence.vertex_count() == 5 * icosphere(2).vertices.cols());
+  CHECK(std::filesystem::exists(file("modes") / "mode_2.glb"));
+  CHECK_FALSE(std::filesystem::exists(file("modes") / "mode_3.glb"));
+
+  const Run sample =
+      run(folder.path(), "sample" + files + quick + " --count 3 --modes 2 --part shape -o " + quoted(file("s.glb")));
+  INFO(sample.out << sample.err);
+  REQUIRE(sample.status == 0);
+  CHECK(read_gltf(file("s.glb"), {"", 8}).sequence.vertex_count() == 3 * icosphere(2).vertices.cols());
+  CHECK(sample.out.find("turned over against the mean") != std::string::npos);
+
+  const Run distances =
+      run(folder.path(), "distances" + files + quick +
+                             " --part start --labels thin,thin,thick,thick --covariate 1,1,1.3,1.3 --csv " +
+                             quoted(file("d.csv")));
+  INFO(distances.out << distances.err);
+  REQUIRE(distances.status == 0);
+  const std::string group = read(file("r.json"));
+  CHECK(number_after(group, "accuracy") == 1);
+  CHECK(number_after(group, "chance") == Approx(1.0 / 3));
+  CHECK(number_after(group, "p_value") == Approx(1.0 / 3).margin(0.06));  // one of three ways to make two pairs
+  CHECK(number_after(group, "explained") > 0.9);
+  CHECK(count(read(file("d.csv")), "\n") == 5);
+  check_refused(run(folder.path(), "distances" + files + " --frames 8 --labels thin,thick"), "2 labels for 4");
+
+  std::ofstream(file("broken.glb")) << "no mesh";
+  const std::string with_broken =
+      "mean " + quoted(file("broken.glb")) + files + quick + " -o " + quoted(file("mean.glb"));
+  const Run refused = run(folder.path(), with_broken);
+  CHECK(refused.status == 1);
+  CHECK(refused.err.find("broken.glb") != std::string::npos);
+  CHECK(refused.err.find("--keep-going") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(file("mean.glb")));
+  const Run kept = run(folder.path(), with_broken + " --keep-going");
+  INFO(kept.out << kept.err);
+  CHECK(kept.status == 0);
+  CHECK(kept.err.find("broken.glb") != std::string::npos);
+  CHECK(std::filesystem::exists(file("mean.glb")));
+  CHECK(count(read(file("r.json")), "\"left_out\"") == 1);
+}
+
 TEST_CASE("a fit ends at its target error, which it names", "[program]") {
   const test::TemporaryFolder folder;
   write_gltf(folder.path() / "ball.glb", growing(icosphere(2)));
