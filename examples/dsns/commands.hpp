@@ -19,7 +19,10 @@ void fit(Body& body, const std::filesystem::path& out, const Settings& settings,
 /// `own`: where to write the result on the first one's own mesh, or empty; likewise below.
 void register_two(const Body& first, const Body& second, const std::filesystem::path& out,
                   const std::filesystem::path& own, const Settings& settings, Report& report);
-void geodesic(const Body& first, const Body& second, const std::filesystem::path& out, int steps,
+/// What a geodesic goes between: bodies registered in space and time, or, to see the difference, as their sphere maps and clocks
+/// have them.
+enum class GeodesicEnds { registered, as_they_are };
+void geodesic(const Body& first, const Body& second, const std::filesystem::path& out, int steps, GeodesicEnds ends,
               const Settings& settings, Report& report);
 void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, const std::filesystem::path& overview,
           const std::filesystem::path& own, const Settings& settings, Report& report);

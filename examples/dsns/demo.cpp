@@ -78,7 +78,7 @@ void demo(std::vector<std::string> sources, const std::filesystem::path& folder,
   register_two(bodies[0], bodies[1], folder / "registered.glb", {}, settings, report);
   report.say("\nGeodesic from the first to the second:");
   report.section("geodesic");
-  geodesic(bodies[0], bodies[1], folder / "geodesic.glb", 5, settings, report);
+  geodesic(bodies[0], bodies[1], folder / "geodesic.glb", 5, GeodesicEnds::registered, settings, report);
   report.say("\nThe mean of all:");
   report.section("mean");
   mean(bodies, folder / "mean.glb", folder / "overview.glb", {}, settings, report);

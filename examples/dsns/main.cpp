@@ -388,12 +388,16 @@ int main(int argc, char** argv) {
   add_own_mesh(register_command);
   add_registration(register_command, settings);
 
+  GeodesicEnds ends = GeodesicEnds::registered;
   CLI::App* geodesic_command = command("geodesic", "the way from one animation to another, and their distance", [&] {
     const std::vector<Body> bodies = load(sources, settings, report, 2);
-    geodesic(bodies[0], bodies[1], out, steps, settings, report);
+    geodesic(bodies[0], bodies[1], out, steps, ends, settings, report);
   });
   geodesic_command->add_option("FILES", sources, "two animations")->required()->expected(2);
   geodesic_command->add_option("-o,--output", out, "write the way to this GLB, side by side");
+  add_choice(geodesic_command, "--ends", ends,
+             {{"registered", GeodesicEnds::registered}, {"as-they-are", GeodesicEnds::as_they_are}},
+             "as-they-are: without registration, to see what it is for");
   geodesic_command->add_option("--points", steps, "animations along the way, ends included")
       ->capture_default_str()
       ->check(CLI::Range(2, 50));

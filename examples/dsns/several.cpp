@@ -127,16 +127,17 @@ void register_two(const Body& a, const Body& b, const std::filesystem::path& out
   report.wrote("registered", out);
 }
 
-void geodesic(const Body& a, const Body& b, const std::filesystem::path& out, int steps, const Settings& settings,
-              Report& report) {
+void geodesic(const Body& a, const Body& b, const std::filesystem::path& out, int steps, GeodesicEnds ends,
+              const Settings& settings, Report& report) {
   ProgressLine line;
   const RegistrationOptions options = registration_options(a, settings);
-  const MovingRegistration r = register_bodies(a, b, settings, std::ref(line));
+  const MovingRegistration r =
+      ends == GeodesicEnds::registered ? register_bodies(a, b, settings, std::ref(line)) : MovingRegistration{};
   const std::vector<SurfaceSamples> samples{sample(a.surface, {}, a.sphere.vertices, options),
                                             sample(b.surface, r.spatial, a.sphere.vertices, options)};
   const FunctionalPca pca = joint_pca(samples, a.sphere, options);
   const CurveGeodesic path(shape_curve(samples[0], pca), shape_curve(samples[1], pca), r.temporal.warp);
-  report_registration(r, report);
+  if (ends == GeodesicEnds::registered) report_registration(r, report);
   report.figure("components", "principal components", pca.modes());
   report.figure("components_residual", "mean squared error they leave", pca.residual());
   report.figure("distance", "distance", path.distance());
@@ -170,8 +171,8 @@ void geodesic(const Body& a, const Body& b, const std::filesystem::path& out, in
               colors);
   }
   scene.write(out);
-  report.say(
-      message("  ", steps, " steps side by side: the first body, the way between, the second registered to it."));
+  report.say(message("  ", steps, " steps side by side: the first body, the way between, the second",
+                     ends == GeodesicEnds::registered ? " registered to it." : " through its sphere map."));
   report.wrote("geodesic", out);
 }
 
