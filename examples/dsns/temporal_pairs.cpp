@@ -1,6 +1,7 @@
 // evaluate temporal --pairs: sequences brought to the pace of others.
 #include "temporal_experiments.hpp"
 
+#include "fits.hpp"
 #include "registration.hpp"
 #include "temporal_curves.hpp"
 #include "temporal_events.hpp"
@@ -62,23 +63,53 @@ void compare_pair(const PairRow& names, const Curve& first, const Curve& second,
   add("ours", 0, r.warp, ours.seconds());
 }
 
+/// The curves of two bodies in the space of their joint components.
+struct CurvePair {
+  Curve first, second;
+};
+
+/// Vertex i of one is vertex i of the other: the second is seen on the first's sphere. The spline in time of sampled surfaces is
+/// that of their coefficients.
+CurvePair curves_of_same_mesh(const Body& a, const Body& b, const Mat3X& y) {
+  constexpr int snapshots = 48;
+  std::vector<SurfaceSamples> samples;
+  std::vector<std::vector<Mat3X>> frames;
+  for (const Body* body : {&a, &b}) {
+    const SampledSurface surface(body->normalized.sequence, a.sphere.vertices);
+    const SampledSurface::Hits hits = surface.locate(y);
+    frames.emplace_back();
+    for (const double t : equidistant_times(body->normalized.sequence.frame_count()))
+      frames.back().push_back(surface.positions(hits, t));
+    samples.emplace_back();
+    for (const int k : spread_frames(int(frames.back().size()), snapshots))
+      samples.back().snapshots.push_back(frames.back()[std::size_t(k)]);
+  }
+  const FunctionalPca pca = basis_of(samples);
+  const auto curve = [&](const std::vector<Mat3X>& all) {
+    Eigen::MatrixXd points(pca.modes(), Index(all.size()));
+    for (std::size_t k = 0; k < all.size(); ++k) points.col(Index(k)) = pca.project(all[k]);
+    return curve_through(points, equidistant_times(points.cols()));
+  };
+  return {curve(frames[0]), curve(frames[1])};
+}
+
+CurvePair curves_of_registered(const Body& a, const Body& b, const Mat3X& y, const Settings& settings) {
+  constexpr int snapshots = 48;
+  ProgressLine line;
+  Settings told = settings;
+  told.frames = 32;
+  const SpatialResult s = register_bodies(a, b, told, std::ref(line)).spatial;
+  const std::vector<SurfaceSamples> samples{samples_at(a.surface, y, Mat3::Identity(), snapshots),
+                                            samples_at(b.surface, s.gamma(y), s.rotation, snapshots)};
+  const FunctionalPca pca = basis_of(samples);
+  return {shape_curve(samples[0], pca), shape_curve(samples[1], pca)};
+}
+
 void compare_bodies(const Body& a, const Body& b, const std::string& name_a, const std::string& name_b,
                     const Settings& settings, const TemporalEvaluation& evaluation, std::vector<PairRow>& rows) {
   const Mat3X y = points_of(a, settings);
-  std::vector<SurfaceSamples> samples{samples_at(a.surface, y, Mat3::Identity(), 48)};
   const bool same = same_triangles(a, b);
-  if (same) {  // vertex i of one is vertex i of the other
-    samples.push_back(samples_at(AnyAnimatedSurface(SampledSurface(b.normalized.sequence, a.sphere.vertices)), y,
-                                 Mat3::Identity(), 48));
-  } else {
-    ProgressLine line;
-    Settings told = settings;
-    told.frames = 32;
-    const SpatialResult s = register_bodies(a, b, told, std::ref(line)).spatial;
-    samples.push_back(samples_at(b.surface, s.gamma(y), s.rotation, 48));
-  }
-  const FunctionalPca pca = basis_of(samples);
-  const Curve first = shape_curve(samples[0], pca), second = shape_curve(samples[1], pca);
+  const auto [first, second] = same ? curves_of_same_mesh(a, b, y) : curves_of_registered(a, b, y, settings);
   const PairRow names{name_a, name_b, {}, 0, 0, {}, {}, 0};
   const std::string clip = parse_source(name_a).clip;
   if (!same || clip.empty() || clip != parse_source(name_b).clip)

@@ -186,6 +186,17 @@ TEST_CASE("two cycles are met with one, and one with two", "[elastic]") {
   CHECK(register_temporally(once, twice, options).second.length == 1);
 }
 
+TEST_CASE("a step to slopes beyond what numbers hold is not taken, and is no error", "[elastic]") {
+  const TemporalOptions options;
+  const Curve first = curve({});
+  const detail::TemporalProblem problem(first, first, detail::FreeWindow::none, 0, options);
+  const auto steep = [](double c) { return detail::TemporalState{Eigen::VectorXd::Constant(1, c)}; };
+  CHECK(problem.allowed(steep(1)));
+  CHECK_FALSE(problem.allowed(steep(3)));
+  CHECK_FALSE(problem.allowed(steep(50)));
+  CHECK_FALSE(problem.allowed(steep(std::numeric_limits<double>::quiet_NaN())));
+}
+
 TEST_CASE("options out of their ranges are refused", "[elastic]") {
   TemporalOptions options;
   options.penalty = -1;

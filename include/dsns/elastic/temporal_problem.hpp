@@ -63,8 +63,12 @@ class TemporalProblem {
         free_(free),
         penalty_(penalty) {}
 
-  TimeWarp warp(const TemporalState& x) const { return TimeWarp::from_log_slope(basis_.leftCols(x.c.size()) * x.c); }
-  bool allowed(const TimeWarp& zeta) const {
+  TimeWarp warp(const TemporalState& x) const { return TimeWarp::from_log_slope(log_slope(x)); }
+  /// Whether the slopes are within their limits; where they are far from them, there is no warp to ask.
+  bool allowed(const TemporalState& x) const {
+    const Eigen::VectorXd u = log_slope(x);
+    if (!u.allFinite() || !(u.maxCoeff() - u.minCoeff() <= -2 * std::log(options_->min_slope))) return false;
+    const TimeWarp zeta = warp(x);
     return zeta.slopes().minCoeff() >= options_->min_slope && zeta.slopes().maxCoeff() <= 1 / options_->min_slope;
   }
   double energy(const TimeWarp& zeta, const TimeWindow& window) const {
@@ -91,11 +95,10 @@ class TemporalProblem {
           matrix.diagonal() += damping * system.matrix.diagonal();
           matrix.diagonal().head(count) += ridge;
           const TemporalState trial = moved(x, matrix.ldlt().solve(system.right));
-          if (trial.c.allFinite() && std::isfinite(trial.window.begin + trial.window.length)) {
-            const TimeWarp zeta = warp(trial);
-            const double trial_energy = energy(zeta, trial.window);
+          if (std::isfinite(trial.window.begin + trial.window.length) && allowed(trial)) {
+            const double trial_energy = energy(warp(trial), trial.window);
             const double next = trial_energy + ridge.dot(trial.c.cwiseAbs2());
-            if (allowed(zeta) && next < penalised) {
+            if (next < penalised) {
               accepted = true;
               gain = (penalised - next) / penalised;
               x = trial;
@@ -117,6 +120,8 @@ class TemporalProblem {
     Eigen::MatrixXd matrix;
     Eigen::VectorXd right;
   };
+
+  Eigen::VectorXd log_slope(const TemporalState& x) const { return basis_.leftCols(x.c.size()) * x.c; }
 
   TemporalState moved(TemporalState x, const Eigen::VectorXd& step) const {
     const Index count = x.c.size();

@@ -47,8 +47,7 @@ inline DirectedRegistration register_directed(const Curve& first, const Curve& s
     const double share = double(end) / last;
     TemporalState found{log_slope_coefficients(search.path(end).values / share, options.cosines.front()), start};
     found.window.length *= share;
-    const TimeWarp zeta = problem.warp(found);
-    if (problem.allowed(zeta) && problem.energy(zeta, found.window) < rest) x = found;
+    if (problem.allowed(found) && problem.energy(problem.warp(found), found.window) < rest) x = found;
   }
   DirectedRegistration out;
   out.steps = problem.refine(x, norms.first);
@@ -102,10 +101,12 @@ inline PartSearch search_part(const Curve& first, const Curve& second, const Tem
   return best;
 }
 
-/// A curve that ends near its start, where it also goes on as it began.
-inline bool is_closed(const Curve& curve, double norm) {
-  const Eigen::VectorXd from = curve.velocity(0), to = curve.velocity(1);
-  return (curve.end() - curve.start()).norm() < 0.05 * norm && (to - from).norm() < 0.3 * (from.norm() + to.norm());
+/// A curve that ends near its start, beside how far it goes: captured cycles do not close exactly.
+inline bool is_closed(const Curve& curve) {
+  constexpr int looks = 50;
+  double extent = 0;
+  for (int k = 1; k <= looks; ++k) extent = std::max(extent, (curve(double(k) / looks) - curve.start()).norm());
+  return (curve.end() - curve.start()).norm() < 0.3 * extent;
 }
 
 /// Another alignment is advised where it would leave less than a third of the energy.
@@ -113,7 +114,7 @@ inline std::string advice(const Curve& first, const Curve& second, const CurveNo
                           const TemporalOptions& options) {
   constexpr double much = 0.1, better = 1.0 / 3;
   if (options.search_grid == 0 || share < much) return {};
-  if (is_closed(first, norms.first) && is_closed(second, norms.second)) {
+  if (is_closed(first) && is_closed(second)) {
     const PhaseSearch phase = search_phase(first, second, norms, 12, options);
     if (phase.energy < better * share)
       return message("cyclic alignment would leave ", phase.energy, " of the two motions' own terms where this leaves ",

@@ -29,7 +29,7 @@ struct WarpNetworkOptions {
   int times = 200;            ///< of a step, random
   int keep_times = 200;       ///< steps until others are drawn
   double penalty = 100;       ///< times the square of a negative slope
-  double learning_rate = 1e-4;
+  double learning_rate = 3e-4;
   RmsPropOptions rmsprop = {};
   std::uint64_t seed = 0;
 };
