@@ -222,7 +222,7 @@ SpatialResult refine_registration(const First& first, const Second& second, cons
       const double energy = p.energy;
       p = problem.minimise(std::move(p), level.field_degree, 1, fields, result.summary.energies);
       const double left = p.energy / energy;
-      if (!(left < 1 - options.tolerance) || (step + 1 >= options.refinement_steps && left > 0.1)) break;
+      if (!(left < 1 - options.tolerance) || (step + 1 >= options.refinement_steps && left > 0.3)) break;
     }
     result.rotation = p.O;
   }
