@@ -1,5 +1,5 @@
 #pragma once
-/// evaluate spatial and evaluate correspondence: registration against truths that are known.
+/// evaluate spatial and evaluate correspondence: registration against truths that are known; and registration in space alone.
 #include "bodies.hpp"
 
 #include <filesystem>
@@ -37,5 +37,11 @@ struct CorrespondenceEvaluation {
 /// Two bodies whose vertices correspond by number, which is not shown: the second is remeshed, its sphere turned and warped.
 void evaluate_correspondence(const std::string& first, const std::string& second, const Settings& settings,
                              const CorrespondenceEvaluation& evaluation, Report& report);
+
+/// Where `register --spatial-only` begins.
+enum class SpatialBeginning { rotation, correspondence };
+/// Registers in space alone: equal times correspond. `out` may be empty: nothing is written.
+void register_spatial_only(const Body& first, const Body& second, const std::filesystem::path& out,
+                           SpatialBeginning beginning, const Settings& settings, Report& report);
 
 }  // namespace dsns::program

@@ -372,10 +372,15 @@ int main(int argc, char** argv) {
              "of the others: upright: the bodies stand alike (same up, same heading); full: they lie at will");
   correspondence_command->add_option("--markdown", correspondence.markdown, "write the table to this file");
 
+  bool spatial_only = false;
+  SpatialBeginning beginning = SpatialBeginning::rotation;
   CLI::App* register_command =
       command("register", "bring the second animation into correspondence with the first", [&] {
         const std::vector<Body> bodies = load(sources, settings, report, 2);
-        register_two(bodies[0], bodies[1], out, own, settings, report);
+        if (spatial_only)
+          register_spatial_only(bodies[0], bodies[1], out, beginning, settings, report);
+        else
+          register_two(bodies[0], bodies[1], out, own, settings, report);
       });
   register_command->add_option("FILES", sources, "two animations")->required()->expected(2);
   register_command->add_option("-o,--output", out, "write both and the registered second to this GLB");
@@ -386,6 +391,14 @@ int main(int argc, char** argv) {
        {"cyclic", dsns::TemporalAlignment::cyclic}},
       "whole: from start to end; partial: of the longer one, what matches the other; cyclic: the second runs around");
   add_own_mesh(register_command);
+  CLI::Option* only =
+      register_command->add_flag("--spatial-only", spatial_only, "in space alone: equal times correspond");
+  only->excludes("--own-mesh");
+  add_choice(register_command, "--start", beginning,
+             {{"rotation", SpatialBeginning::rotation}, {"correspondence", SpatialBeginning::correspondence}},
+             "of --spatial-only: rotation: the best of many; correspondence: by intrinsic spectra, for other shapes "
+             "and poses");
+  register_command->get_option("--start")->needs(only);
   add_registration(register_command, settings);
 
   GeodesicEnds ends = GeodesicEnds::registered;

@@ -1,7 +1,9 @@
 #pragma once
 /// Everything that needs Eigen alone. Apart are <dsns/io/gltf.hpp>, which needs tinygltf, and
-/// <dsns/matching/correspond.hpp>, which needs Spectra.
+/// <dsns/matching/correspond.hpp> and <dsns/stats/matched_registration.hpp>, which need Spectra.
 #include <dsns/elastic/geodesic.hpp>
+#include <dsns/elastic/gradient_registration.hpp>
+#include <dsns/elastic/known_warp.hpp>
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/geometry/geodesic_distance.hpp>
 #include <dsns/geometry/integrals.hpp>
@@ -18,6 +20,8 @@
 #include <dsns/matching/spectral_targets.hpp>
 #include <dsns/matching/target_fit.hpp>
 #include <dsns/mesh/area_ratios.hpp>
+#include <dsns/mesh/edge_distances.hpp>
+#include <dsns/mesh/isotropic_remesh.hpp>
 #include <dsns/mesh/join_pieces.hpp>
 #include <dsns/mesh/own_mesh.hpp>
 #include <dsns/mesh/repair.hpp>

@@ -45,7 +45,7 @@ struct SpatialOptions {
   SpatialStart start;  ///< with RotationSearch::none; what can be no better than it is given back
   FieldAction action = FieldAction::half_density;
   int steps_per_level = 8;
-  int refinement_steps = 2;        ///< per level of the refinement
+  int refinement_steps = 2;        ///< per level of the refinement; more while each leaves less than 0.3
   int latitudes = 24;              ///< quadrature of latitudes x 2 latitudes nodes
   int rotations = 600;             ///< candidates of the search
   int refined = 16;                ///< best candidates, 30 degrees apart, that are refined before one is chosen

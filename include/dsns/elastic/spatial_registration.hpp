@@ -216,10 +216,15 @@ SpatialResult refine_registration(const First& first, const Second& second, cons
     SphereDiffeomorphism gamma(former.gamma.rotation());
     for (const auto& v : fields) gamma.append(v);
     const SphereDisplacement begin = gamma.displacement(charts_at(problem.points()));
-    result.rotation = problem
-                          .minimise(problem.at(begin.y, begin.J, result.rotation), level.field_degree,
-                                    options.refinement_steps, fields, result.summary.energies)
-                          .O;
+    detail::RefinementState p = problem.at(begin.y, begin.J, result.rotation);
+    constexpr int most_steps = 8;
+    for (int step = 0; step < most_steps; ++step) {
+      const double energy = p.energy;
+      p = problem.minimise(std::move(p), level.field_degree, 1, fields, result.summary.energies);
+      const double left = p.energy / energy;
+      if (!(left < 1 - options.tolerance) || (step + 1 >= options.refinement_steps && left > 0.3)) break;
+    }
+    result.rotation = p.O;
   }
   const std::size_t before = former.gamma.increments().size(), found = fields.size();
   result.gamma = detail::certified(former.gamma.rotation(), std::move(fields), result.summary);

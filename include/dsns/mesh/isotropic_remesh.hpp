@@ -11,6 +11,7 @@
 #include <dsns/mesh/surface_walk.hpp>
 
 #include <numeric>
+#include <queue>
 
 namespace dsns {
 
@@ -72,11 +73,6 @@ class Remesher {
   static Vec3d normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) { return (b - a).cross(c - a); }
   Vec3d normal(const EditableMesh::Triangle& t) const { return normal(at(t[0]), at(t[1]), at(t[2])); }
 
-  void put(int v, const Vec3d& x, const SurfacePoint& from) {
-    places_[std::size_t(v)] = walk_.nearest(x, from);
-    x_[std::size_t(v)] = walk_.position(places_[std::size_t(v)]);
-  }
-
   /// Whether a vertex at x keeps every face around `v` upright, those that also hold `without` left aside.
   bool upright(int v, const Vec3d& x, int without = -1) const {
     constexpr double least_cosine = 0.2;
@@ -90,19 +86,29 @@ class Remesher {
     return true;
   }
 
+  /// The longest first: in another order needles are cut into more and more needles.
   void split_long() {
-    std::vector<std::pair<int, int>> open = mesh_.edges();
-    while (!open.empty()) {
-      const auto [a, b] = open.back();
-      open.pop_back();
-      if (!mesh_.joined(a, b) || distance(a, b) <= 4.0 / 3 * length_) continue;
+    using Entry = std::pair<double, std::pair<int, int>>;
+    std::priority_queue<Entry> open;
+    for (const auto& edge : mesh_.edges()) open.push({distance(edge.first, edge.second), edge});
+    while (!open.empty() && open.top().first > 4.0 / 3 * length_) {
+      const auto [length, edge] = open.top();
+      const auto [a, b] = edge;
+      open.pop();
+      if (!mesh_.joined(a, b)) continue;
+      // The middle of a chord over a dent may lead back to an end; halves must be shorter than the whole.
+      const Vec3d middle = (at(a) + at(b)) / 2;
+      const SurfacePoint one = walk_.nearest(middle, places_[std::size_t(a)]),
+                         two = walk_.nearest(middle, places_[std::size_t(b)]);
+      const Vec3d x1 = walk_.position(one), x2 = walk_.position(two);
+      const bool first = (x1 - middle).norm() <= (x2 - middle).norm();
+      const Vec3d x = first ? x1 : x2;
+      if (std::max((x - at(a)).norm(), (x - at(b)).norm()) > 0.7 * length) continue;
       const int m = mesh_.split(a, b);
-      x_.emplace_back();
-      places_.emplace_back();
-      put(m, (at(a) + at(b)) / 2, places_[std::size_t(a)]);
-      // The middle may lie away from the chord; halves that do not get shorter end there.
+      x_.push_back(x);
+      places_.push_back(first ? one : two);
       for (const int v : mesh_.neighbours(m))
-        if (distance(m, v) < 0.9 * distance(a, b)) open.emplace_back(m, v);
+        if (const double d = distance(m, v); d < 0.95 * length) open.push({d, {m, v}});
     }
   }
 
