@@ -171,11 +171,11 @@ inline TemporalResult register_temporally(const Curve& first, const Curve& secon
     summary.energy_after = energy;
     summary.stop = "all levels done";
   };
-  // A registration from the first's side, or from the second's, judged by what it leaves of the stretches' own terms.
-  enum class Side { first, second };
-  const auto judge = [&](const detail::DirectedRegistration& r, Side target) {
+  // A registration to the first, or to the second, judged by what it leaves of the stretches' own terms.
+  enum class Target { to_first, to_second };
+  const auto judge = [&](const detail::DirectedRegistration& r, Target target) {
     summary.steps += r.steps;
-    const bool ahead = target == Side::first;
+    const bool ahead = target == Target::to_first;
     const Curve &a = ahead ? first : second, &b = ahead ? second : first;
     const double own =
         squared_norm(warped_srvf(a, {}, grid), grid) + squared_norm(warped_srvf(b, {}, grid, r.window), grid);
@@ -187,12 +187,12 @@ inline TemporalResult register_temporally(const Curve& first, const Curve& secon
   const detail::CurveNorms exchanged{norms.second, norms.first};
   if (options.alignment == TemporalAlignment::cyclic) {
     const TimeWindow start = detail::search_phase(first, second, norms, 24, options).window;
-    judge(detail::register_directed(first, second, norms, start, detail::FreeWindow::begin, options), Side::first);
+    judge(detail::register_directed(first, second, norms, start, detail::FreeWindow::begin, options), Target::to_first);
   } else {
     const auto free =
         options.alignment == TemporalAlignment::partial ? detail::FreeWindow::length : detail::FreeWindow::none;
-    judge(detail::register_directed(first, second, norms, {}, free, options), Side::first);
-    judge(detail::register_directed(second, first, exchanged, {}, free, options), Side::second);
+    judge(detail::register_directed(first, second, norms, {}, free, options), Target::to_first);
+    judge(detail::register_directed(second, first, exchanged, {}, free, options), Target::to_second);
   }
   summary.min_slope = std::min(result.warp.min_slope(), 1 / result.warp.slopes().maxCoeff());
   if (options.alignment == TemporalAlignment::whole)
