@@ -24,6 +24,10 @@ void register_two(const Body& first, const Body& second, const std::filesystem::
 enum class GeodesicEnds { registered, as_they_are };
 void geodesic(const Body& first, const Body& second, const std::filesystem::path& out, int steps, GeodesicEnds ends,
               const Settings& settings, Report& report);
+/// The motion of the first on the second, each triangle deformed as the corresponding piece of the first is from where both
+/// stand alike; `own` is the second's.
+void transfer(const Body& first, const Body& second, const std::filesystem::path& out, const std::filesystem::path& own,
+              const Settings& settings, Report& report);
 void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, const std::filesystem::path& overview,
           const std::filesystem::path& own, const Settings& settings, Report& report);
 struct Study {

@@ -211,7 +211,7 @@ int main(int argc, char** argv) {
         check_output(out, name == "fit" && dsns::lower_extension(out) == ".dsns" ? ".dsns" : ".glb");
       check_output(settings.checkpoint, ".dsns");
       check_output(overview, ".glb");
-      check_own_mesh(own, sources.empty() ? "" : sources.front());
+      check_own_mesh(own, sources.empty() ? "" : name == "transfer" ? sources.back() : sources.front());
       run();
       report.save(settings.json);
     });
@@ -415,6 +415,15 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::Range(2, 50));
   add_registration(geodesic_command, settings);
+
+  CLI::App* transfer_command = command("transfer", "the motion of the first animation on the body of the second", [&] {
+    const std::vector<Body> bodies = load(sources, settings, report, 2);
+    transfer(bodies[0], bodies[1], out, own, settings, report);
+  });
+  transfer_command->add_option("FILES", sources, "two animations that begin alike")->required()->expected(2);
+  transfer_command->add_option("-o,--output", out, "write both and the second in the first's motion to this GLB");
+  transfer_command->add_option("--own-mesh", own, "write the result on the second file's own mesh, as register does");
+  add_registration(transfer_command, settings);
 
   CLI::App* mean_command = command("mean", "the mean of animations", [&] {
     mean(load(sources, settings, report, 2), out, overview, own, settings, report);

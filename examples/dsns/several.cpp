@@ -1,9 +1,11 @@
-// register, geodesic, mean: what is said of several animations.
+// register, geodesic, transfer, mean: what is said of several animations.
 #include "commands.hpp"
 #include "registration.hpp"
 #include "scene.hpp"
 
+#include <dsns/mesh/deformation_transfer.hpp>
 #include <dsns/mesh/sphere_mask.hpp>
+#include <dsns/sphere/sphere_map.hpp>
 #include <dsns/stats/moving_mean.hpp>
 
 #include <numeric>
@@ -96,6 +98,14 @@ MeshSequence registered(const Body& body, const MovingRegistration& r, const Tri
                      r.temporal.second.length * body.normalized.sequence.duration, body.normalized.sequence.name);
 }
 
+/// Root mean square angle between gamma and the rotation nearest to it, degrees.
+double warp_beside_turn(const SphereDiffeomorphism& gamma) {
+  const SphereQuadrature q = sphere_quadrature(40);
+  const Mat3X y = gamma(q.points);
+  const Mat3 turn = nearest_rotation(y * q.weights.asDiagonal() * q.points.transpose());
+  return angular_distance(y, turn * q.points, q.weights).rms * 180 / pi;
+}
+
 double mix(double a, double b, double tau) { return (1 - tau) * a + tau * b; }
 
 }  // namespace
@@ -141,6 +151,13 @@ void geodesic(const Body& a, const Body& b, const std::filesystem::path& out, in
   report.figure("components", "principal components", pca.modes());
   report.figure("components_residual", "mean squared error they leave", pca.residual());
   report.figure("distance", "distance", path.distance());
+  report.figure("distance_start", "  of the first poses", path.start_distance());
+  report.figure("distance_motion", "  of the motions, pace taken out", path.motion_distance());
+  const TimeGrid grid = time_grid();
+  report.figure("pace_angle_deg", "what pace takes: angle of the time warp to none, degrees",
+                std::sqrt(warp_tangent(r.temporal.warp, grid).cwiseAbs2().dot(grid.weights)) * 180 / pi);
+  report.figure("sphere_warp_deg", "what the sphere map takes besides a turn, degrees rms",
+                warp_beside_turn(r.spatial.gamma));
   say_units(report);
   if (out.empty()) return say_not_written(report);
 
@@ -174,6 +191,39 @@ void geodesic(const Body& a, const Body& b, const std::filesystem::path& out, in
   report.say(message("  ", steps, " steps side by side: the first body, the way between, the second",
                      ends == GeodesicEnds::registered ? " registered to it." : " through its sphere map."));
   report.wrote("geodesic", out);
+}
+
+void transfer(const Body& a, const Body& b, const std::filesystem::path& out, const std::filesystem::path& own,
+              const Settings& settings, Report& report) {
+  ProgressLine line;
+  const MovingRegistration r = register_bodies(a, b, settings, std::ref(line));
+  report_registration(r, report);
+  // The first body on the second's triangles, turned as the second stands.
+  const int frames = settings.frames;
+  const Mat3 turn = r.spatial.rotation.transpose();
+  const Mat3X places = r.spatial.gamma.inverse(b.sphere.vertices);
+  const auto first_at = [&](double t) -> Mat3X { return turn * positions(a.surface, places, t); };
+  const Faces& faces = b.normalized.sequence.faces;
+  const DeformationTransfer deformed(first_at(r.temporal.first_time(0)),
+                                     positions(b.surface, b.sphere.vertices, r.temporal.second_time(0)), faces);
+  std::vector<Mat3X> result;
+  for (int k = 0; k < frames; ++k) result.push_back(deformed(first_at(double(k) / (frames - 1))));
+  const MeshSequence moved =
+      denormalize(result, faces, turn * relative_trajectory(a.normalized, {}, frames), b.normalized.scale,
+                  a.normalized.sequence.duration, b.normalized.sequence.name + " as " + a.normalized.sequence.name);
+  if (!own.empty()) {
+    write_on_own_mesh(own, b, moved, settings);
+    report.wrote("own_mesh", own);
+  }
+  if (out.empty()) return own.empty() ? say_not_written(report) : void();
+  Scene scene;
+  const Mat3X colors = place_colors(a, places);
+  scene.add(as_represented(a, frames), place_colors(a, a.sphere.vertices));
+  scene.add(as_represented(b, frames), colors);
+  scene.add(moved, colors);
+  scene.write(out);
+  report.say("  Side by side: the first, the second, the second moving as the first. Colours correspond.");
+  report.wrote("transfer", out);
 }
 
 MeshSequence BodiesMean::animation(const Eigen::MatrixXd& points, const Faces& faces, const std::string& name) const {

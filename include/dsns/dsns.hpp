@@ -20,6 +20,7 @@
 #include <dsns/matching/spectral_targets.hpp>
 #include <dsns/matching/target_fit.hpp>
 #include <dsns/mesh/area_ratios.hpp>
+#include <dsns/mesh/deformation_transfer.hpp>
 #include <dsns/mesh/edge_distances.hpp>
 #include <dsns/mesh/isotropic_remesh.hpp>
 #include <dsns/mesh/join_pieces.hpp>

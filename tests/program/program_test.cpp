@@ -155,6 +155,14 @@ TEST_CASE("two bodies go through registration, and the result can be read again"
   const MeshSequence way = read_gltf(folder.path() / "way.glb", {"", 6}).sequence;
   CHECK(way.vertex_count() == 3 * icosphere(2).vertices.cols());
   CHECK(way.frame_count() == 6);
+
+  const Run moved =
+      run(folder.path(), "transfer " + quoted(folder.path() / "a.glb") + " " + quoted(folder.path() / "b.glb") +
+                             " --frames 6 -o " + quoted(folder.path() / "as_a.glb"));
+  INFO(moved.out << moved.err);
+  REQUIRE(moved.status == 0);
+  const MeshSequence all = read_gltf(folder.path() / "as_a.glb", {"", 6}).sequence;
+  CHECK(all.vertex_count() == icosphere(2).vertices.cols() + 2 * latitude_longitude_sphere(9, 14).vertices.cols());
 }
 
 TEST_CASE("a representation is evaluated on every file of a folder, and a broken one does not stop the rest",

@@ -18,7 +18,11 @@ class CurveGeodesic {
         energy_(elastic_energy(first, second, warp)) {}
 
   /// sqrt(|a1(0) - a2(0)|^2 + |q1 - q2 * zeta|^2): the first term in squared units of a, the second in units of a.
-  double distance() const { return std::sqrt((start1_ - start2_).squaredNorm() + energy_); }
+  double distance() const { return std::hypot(start_distance(), motion_distance()); }
+  /// |a1(0) - a2(0)|.
+  double start_distance() const { return (start1_ - start2_).norm(); }
+  /// |q1 - q2 * zeta|.
+  double motion_distance() const { return std::sqrt(energy_); }
 
   /// Points of the curve at fraction tau of the way, K x times().size(); tau = 0 is the first, 1 the second, registered.
   Eigen::MatrixXd points(double tau) const {
