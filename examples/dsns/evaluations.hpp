@@ -27,6 +27,11 @@ struct SpatialEvaluation {
 int evaluate_spatial(const std::vector<std::string>& sources, const Settings& settings,
                      const SpatialEvaluation& evaluation, Report& report);
 
+/// Laws that a registration of two bodies in space should obey, whatever is true: there and back is no way; a turn that both
+/// bodies make, or a warp of both spheres by `degrees`, goes with the result.
+void evaluate_consistency(const Body& first, const Body& second, double degrees, const Settings& settings,
+                          Report& report);
+
 struct CorrespondenceEvaluation {
   int seeds = 1;           ///< runs, each with its own remeshing, turn and warp
   double degrees = 5;      ///< size of the warp, rms

@@ -345,6 +345,18 @@ int main(int argc, char** argv) {
              "sampled: the mesh itself; neural: fits to it, of either side with a seed of its own");
   add_fit(spatial_command, settings);
 
+  double common_warp = 5;
+  CLI::App* consistency_command = command_of(
+      evaluate_command, "consistency", "laws that the registration of two animations in space should obey", [&] {
+        const std::vector<Body> bodies = load(sources, settings, report, 2);
+        evaluate_consistency(bodies[0], bodies[1], common_warp, settings, report);
+      });
+  consistency_command->add_option("FILES", sources, "two animations")->required()->expected(2);
+  consistency_command->add_option("--degrees", common_warp, "size of the warp of both spheres, degrees rms")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 20.0));
+  add_registration(consistency_command, settings);
+
   CorrespondenceEvaluation correspondence;
   CLI::App* correspondence_command =
       command_of(evaluate_command, "correspondence",
