@@ -163,6 +163,17 @@ TEST_CASE("two bodies go through registration, and the result can be read again"
   REQUIRE(moved.status == 0);
   const MeshSequence all = read_gltf(folder.path() / "as_a.glb", {"", 6}).sequence;
   CHECK(all.vertex_count() == icosphere(2).vertices.cols() + 2 * latitude_longitude_sphere(9, 14).vertices.cols());
+
+  const Run laws = run(folder.path(), "evaluate consistency " + quoted(folder.path() / "a.glb") + " " +
+                                          quoted(folder.path() / "b.glb") + " --frames 6 --degrees 3 --json " +
+                                          quoted(folder.path() / "laws.json"));
+  INFO(laws.out << laws.err);
+  REQUIRE(laws.status == 0);
+  const std::string json = read(folder.path() / "laws.json");
+  CHECK(number_after(json, "min_jacobian") > 0);
+  CHECK(number_after(json, "turned_rms_deg") < 0.1);
+  CHECK(number_after(json, "inverse_rms_deg") < 3);
+  CHECK(number_after(json, "warped_rms_deg") < 3);
 }
 
 TEST_CASE("a representation is evaluated on every file of a folder, and a broken one does not stop the rest",
