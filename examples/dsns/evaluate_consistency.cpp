@@ -9,15 +9,13 @@ namespace dsns::program {
 
 namespace {
 
-constexpr double degree = pi / 180;
-
 /// Root mean square and largest angle between two maps, as figures.
 template <class A, class B>
 void report_angle(const std::string& key, const std::string& label, const A& a, const B& b, Report& report) {
   const SphereQuadrature q = fibonacci_sphere(4000);
   const AngularDistance d = angular_distance(Mat3X(a(q.points)), Mat3X(b(q.points)), q.weights);
-  report.figure(key + "_rms_deg", label + ", degrees rms", d.rms / degree);
-  report.figure(key + "_max_deg", "  at most", d.largest / degree);
+  report.figure(key + "_rms_deg", label + ", degrees rms", d.rms * 180 / pi);
+  report.figure(key + "_max_deg", "  at most", d.largest * 180 / pi);
 }
 
 }  // namespace
@@ -54,7 +52,7 @@ void evaluate_consistency(const Body& first, const Body& second, double degrees,
                         masked(first, same_place), std::ref(line));
   report_angle("turned", "changed by a turn of both bodies", turned.gamma, there.gamma, report);
 
-  const KnownWarp warp = known_warp(settings.seed + 1, 3, degrees * degree, KnownTurns::none);
+  const KnownWarp warp = known_warp(settings.seed + 1, 3, degrees * pi / 180, KnownTurns::none);
   const SpatialResult warped = register_in_space(
       RegisteredSurface(f, Mat3::Identity(), warp.gamma), RegisteredSurface(g, Mat3::Identity(), warp.gamma),
       masked(first, [gamma = warp.gamma](const Mat3X& s) { return gamma(s); }), std::ref(line));

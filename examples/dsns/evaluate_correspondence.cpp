@@ -174,9 +174,9 @@ std::vector<Row> evaluate_seed(const Body& a, const Body& truth, std::uint64_t s
   std::vector<Row> rows;
   if (evaluation.baselines) {
     Clock clock;
-    const int degree = 20;
-    const std::vector<HarmonicSurface> f{project_on_harmonics(at_time(a.surface, 0.0), degree)},
-        g{project_on_harmonics(at_time(second, 0.0), degree)};
+    const int harmonics = 20;
+    const std::vector<HarmonicSurface> f{project_on_harmonics(at_time(a.surface, 0.0), harmonics)},
+        g{project_on_harmonics(at_time(second, 0.0), harmonics)};
     SpatialOptions turn = options.spatial;
     turn.levels = {{1, 6, 0.05, 0.5}};
     turn.steps_per_level = 0;

@@ -1,5 +1,7 @@
 #include "representation_tables.hpp"
 
+#include "tables.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,28 +9,6 @@
 namespace dsns::program {
 
 namespace {
-
-std::string scientific(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2e", x);
-  return text;
-}
-
-std::string fixed(double x, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, x);
-  return text;
-}
-
-std::string line(const std::vector<std::string>& cells) {
-  std::string out = "|";
-  for (const std::string& cell : cells) out += " " + cell + " |";
-  return out + "\n";
-}
-
-std::string head(const std::vector<std::string>& cells) {
-  return line(cells) + line(std::vector<std::string>(cells.size(), "---"));
-}
 
 /// The D-SNS paper's tables 1 and 2: the mean error trained on all frames of a sequence, which table 2 rounds, and on 30.
 struct Published {
@@ -40,56 +20,44 @@ constexpr Published published[] = {{"DFAUST", 1.60e-6, 0.17e-5, 1.00e-5},
                                    {"COMA", 2.29e-6, 0.23e-5, 0.14e-5},
                                    {"VOCA", 0.89e-6, 0.10e-5, 0.11e-5}};
 
-std::string quoted(const std::string& cell) {
-  if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
-  std::string out = "\"";
-  for (const char c : cell) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
-std::string in_table(std::string text) {
-  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
-  return text;
-}
-
 std::string by_sequence(const RepresentationTable& table) {
-  std::string out = head({"sequence", "frames", "MSD", "RMS distance", "largest", "to flat normals: mean", "median",
-                          "to interpolated: mean", "median", "flat to interpolated: mean", "median", "modes", "steps",
-                          "seconds", "CPU-seconds"});
+  std::string out = table_head({"sequence", "frames", "MSD", "RMS distance", "largest", "to flat normals: mean",
+                                "median", "to interpolated: mean", "median", "flat to interpolated: mean", "median",
+                                "modes", "steps", "seconds", "CPU-seconds"});
   for (const auto& [file, f, others] : table.rows) {
     const SampledSurfaceError& e = f.error;
-    out += line({in_table(file), std::to_string(f.frames), scientific(e.msd), scientific(e.rms_distance),
-                 scientific(e.max_distance), fixed(e.normal_angle_mean_deg, 2), fixed(e.normal_angle_median_deg, 2),
-                 fixed(e.smooth_normal_angle_mean_deg, 2), fixed(e.smooth_normal_angle_median_deg, 2),
-                 fixed(e.mesh_normal_angle_mean_deg, 2), fixed(e.mesh_normal_angle_median_deg, 2),
-                 f.separable ? std::to_string(f.separable->modes) : "-", std::to_string(f.steps),
-                 fixed(f.wall_seconds, 1), fixed(f.cpu_seconds, 1)});
+    out += table_line({file, std::to_string(f.frames), scientific(e.msd), scientific(e.rms_distance),
+                       scientific(e.max_distance), fixed(e.normal_angle_mean_deg, 2),
+                       fixed(e.normal_angle_median_deg, 2), fixed(e.smooth_normal_angle_mean_deg, 2),
+                       fixed(e.smooth_normal_angle_median_deg, 2), fixed(e.mesh_normal_angle_mean_deg, 2),
+                       fixed(e.mesh_normal_angle_median_deg, 2), f.separable ? std::to_string(f.separable->modes) : "-",
+                       std::to_string(f.steps), fixed(f.wall_seconds, 1), fixed(f.cpu_seconds, 1)});
   }
   return out;
 }
 
 std::string table_1(const RepresentationTable& table) {
   const Spread s = spread(column(table.rows, [](const auto& row) { return row.fit.error.msd; }));
-  std::string out = head({"MSD, trained on all frames", "mean", "standard deviation", "median"});
-  out += line({"these " + std::to_string(table.rows.size()) + ", on points never seen", scientific(s.mean),
-               scientific(s.std), scientific(s.median)});
+  std::string out = table_head({"MSD, trained on all frames", "mean", "standard deviation", "median"});
+  out += table_line({"these " + std::to_string(table.rows.size()) + ", on points never seen", scientific(s.mean),
+                     scientific(s.std), scientific(s.median)});
   for (const Published& p : published)
-    out += line({std::string("paper, ") + p.data + ", on its training points", scientific(p.all), "-", "-"});
+    out += table_line({std::string("paper, ") + p.data + ", on its training points", scientific(p.all), "-", "-"});
   return out;
 }
 
 std::string table_2(const RepresentationTable& table) {
   const std::string few = std::to_string(table.frames_trained) + " frames";
-  std::string out = head({"sequence", "MSD, all frames", few + ", on the others", "cubic interpolation of " + few,
-                          "ratio", "CPU-seconds"});
+  std::string out = table_head({"sequence", "MSD, all frames", few + ", on the others", "cubic interpolation of " + few,
+                                "ratio", "CPU-seconds"});
   for (const auto& [file, f, others] : table.rows)
     if (others)
       out +=
-          line({in_table(file), scientific(f.error.msd), scientific(others->msd), scientific(others->msd_interpolation),
-                fixed(others->ratio(), 2), fixed(others->fit.cpu_seconds, 1)});
+          table_line({file, scientific(f.error.msd), scientific(others->msd), scientific(others->msd_interpolation),
+                      fixed(others->ratio(), 2), fixed(others->fit.cpu_seconds, 1)});
   for (const Published& p : published)
-    out += line({std::string("paper, ") + p.data + " (30 frames)", scientific(p.table_2_all), scientific(p.table_2_few),
-                 "-", "-", "-"});
+    out += table_line({std::string("paper, ") + p.data + " (30 frames)", scientific(p.table_2_all),
+                       scientific(p.table_2_few), "-", "-", "-"});
   return out;
 }
 
@@ -117,7 +85,7 @@ std::string csv(const RepresentationTable& table) {
   const auto number = [](double x) { return "," + message(x); };
   for (const auto& [file, f, others] : table.rows) {
     const SampledSurfaceError& e = f.error;
-    out += quoted(file) + "," + std::to_string(f.frames);
+    out += csv_field(file) + "," + std::to_string(f.frames);
     for (const double x : {e.msd, e.rms_distance, e.max_distance, e.normal_angle_mean_deg, e.normal_angle_median_deg,
                            e.smooth_normal_angle_mean_deg, e.smooth_normal_angle_median_deg,
                            e.mesh_normal_angle_mean_deg, e.mesh_normal_angle_median_deg})

@@ -2,6 +2,7 @@
 #include "commands.hpp"
 #include "registration.hpp"
 #include "scene.hpp"
+#include "tables.hpp"
 
 #include <dsns/io/atomic_file.hpp>
 #include <dsns/stats/groups.hpp>
@@ -52,13 +53,6 @@ double turned_over(const BodiesMean& mean, const RegisteredMotion& motion, const
   return most;
 }
 
-/// A field of a CSV file.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
-
 void require_one_each(std::size_t given, std::size_t bodies, const char* what) {
   require(given == 0 || given == bodies, given, " ", what, " for ", bodies,
           " animations: give one for each, in their order");
@@ -85,7 +79,7 @@ void modes(const std::vector<Body>& bodies, const Study& study, const Settings& 
     report.row("rows");
     report.note("file", bodies[i].file.string());
     report.figure("scores", name[i] + ": scores", numbers(model.scores().col(Index(i))));
-    csv << quoted(name[i]);
+    csv << csv_field(name[i]);
     for (Index k = 0; k < model.modes(); ++k) csv << "," << model.scores()(k, Index(i));
     csv << "\n";
   }
@@ -148,11 +142,11 @@ void distances(const std::vector<Body>& bodies, const Study& study, const Settin
   report.say("Distances, in the order of a clustering by average linkage:");
   std::ostringstream csv;
   csv << "animation";
-  for (const Index i : tree.order) csv << "," << quoted(name[std::size_t(i)]);
+  for (const Index i : tree.order) csv << "," << csv_field(name[std::size_t(i)]);
   csv << "\n";
   for (const Index i : tree.order) {
     std::vector<double> row;
-    csv << quoted(name[std::size_t(i)]);
+    csv << csv_field(name[std::size_t(i)]);
     for (const Index j : tree.order) {
       row.push_back(d(i, j));
       csv << "," << d(i, j);

@@ -21,10 +21,10 @@ struct Content {
 double wrapped(double t) { return t >= 0 && t <= 1 ? t : t - std::floor(t); }
 
 Curve seen(const Curve& motion, const Content& content, const TimeWarp& pace) {
-  constexpr Index intervals = 1600;
-  Eigen::MatrixXd velocities(motion.dimension(), intervals + 1);
-  for (Index k = 0; k <= intervals; ++k) {
-    const double t = double(k) / double(intervals);
+  constexpr Index fine = 1600;
+  Eigen::MatrixXd velocities(motion.dimension(), fine + 1);
+  for (Index k = 0; k <= fine; ++k) {
+    const double t = double(k) / double(fine);
     velocities.col(k) = content.rate * pace.slope(t) * motion.velocity(wrapped(content.unwrapped(pace(t))));
   }
   return {motion(wrapped(content.unwrapped(0))), std::move(velocities)};

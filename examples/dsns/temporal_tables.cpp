@@ -1,5 +1,7 @@
 #include "temporal_tables.hpp"
 
+#include "tables.hpp"
+
 #include <dsns/core/errors.hpp>
 #include <dsns/io/atomic_file.hpp>
 
@@ -18,32 +20,6 @@ extern char** environ;
 namespace dsns::program {
 
 namespace {
-
-std::string scientific(double x) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.2e", x);
-  return text;
-}
-
-std::string line(const std::vector<std::string>& cells) {
-  std::string out = "|";
-  for (std::string cell : cells) {
-    for (std::size_t at = 0; (at = cell.find('|', at)) != std::string::npos; at += 2) cell.insert(at, "\\");
-    out += " " + cell + " |";
-  }
-  return out + "\n";
-}
-
-std::string head(const std::vector<std::string>& cells) {
-  return line(cells) + line(std::vector<std::string>(cells.size(), "---"));
-}
-
-std::string quoted(const std::string& cell) {
-  if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
-  std::string out = "\"";
-  for (const char c : cell) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
 
 std::string name_of(const std::string& method, int samples) {
   if (method == "before") return "before";
@@ -126,7 +102,7 @@ std::vector<PairGroup> groups(const std::vector<PairRow>& rows) {
 std::string csv(const std::vector<RecoveryRow>& rows) {
   std::string out = "file,surface,method,samples,warp,warp_l2,seconds\n";
   for (const RecoveryRow& r : rows)
-    out += message(quoted(r.file), ",", r.surface, ",", r.method, ",", r.samples, ",", r.warp, ",", r.warp_l2, ",",
+    out += message(csv_field(r.file), ",", r.surface, ",", r.method, ",", r.samples, ",", r.warp, ",", r.warp_l2, ",",
                    r.seconds, "\n");
   return out;
 }
@@ -134,23 +110,25 @@ std::string csv(const std::vector<RecoveryRow>& rows) {
 std::string csv(const std::vector<PairRow>& rows) {
   std::string out = "first,second,method,samples,distance,timing,foot_strikes,seconds\n";
   for (const PairRow& r : rows)
-    out += message(quoted(r.first), ",", quoted(r.second), ",", r.method, ",", r.samples, ",", r.distance, ",",
+    out += message(csv_field(r.first), ",", csv_field(r.second), ",", r.method, ",", r.samples, ",", r.distance, ",",
                    r.timing ? message(*r.timing) : std::string(), ",", r.strikes ? message(*r.strikes) : std::string(),
                    ",", r.seconds, "\n");
   return out;
 }
 
 std::string markdown(const std::vector<RecoveryRow>& rows) {
-  std::string out = head({"method and surface", "warps", "L2 error: median", "95th percentile", "largest", "seconds"});
+  std::string out =
+      table_head({"method and surface", "warps", "L2 error: median", "95th percentile", "largest", "seconds"});
   for (const RecoveryGroup& g : groups(rows))
-    out += line({g.label, std::to_string(g.warp_l2.count), scientific(g.warp_l2.median), scientific(g.warp_l2.high),
-                 scientific(g.warp_l2.most), scientific(g.seconds.mean)});
+    out += table_line({g.label, std::to_string(g.warp_l2.count), scientific(g.warp_l2.median),
+                       scientific(g.warp_l2.high), scientific(g.warp_l2.most), scientific(g.seconds.mean)});
   return out;
 }
 
 std::string markdown(const std::vector<PairRow>& rows) {
-  std::string out = head({"method", "pairs", "distance: mean", "standard deviation", "median", "timing: warps known",
-                          "mean", "median", "largest", "foot strikes: pairs", "mean", "median", "seconds"});
+  std::string out =
+      table_head({"method", "pairs", "distance: mean", "standard deviation", "median", "timing: warps known", "mean",
+                  "median", "largest", "foot strikes: pairs", "mean", "median", "seconds"});
   const auto cells = [](const Quantiles& q, std::initializer_list<double> values) {
     std::vector<std::string> text{std::to_string(q.count)};
     for (const double x : values) text.push_back(q.count > 0 ? scientific(x) : "-");
@@ -163,7 +141,7 @@ std::string markdown(const std::vector<PairRow>& rows) {
                              cells(g.strikes, {g.strikes.mean, g.strikes.median})})
       row.insert(row.end(), part.begin(), part.end());
     row.push_back(scientific(g.seconds.mean));
-    out += line(row);
+    out += table_line(row);
   }
   return out;
 }
@@ -172,15 +150,15 @@ std::string csv(const std::vector<StretchRow>& rows) {
   std::string out =
       "file,case,warp,warp_l2_whole,warp_l2,energy_whole,energy,first_end,second_begin,second_passes,seconds,advice\n";
   for (const StretchRow& r : rows)
-    out += message(quoted(r.file), ",", r.content, ",", r.warp, ",", r.miss_whole, ",", r.miss_named, ",",
+    out += message(csv_field(r.file), ",", r.content, ",", r.warp, ",", r.miss_whole, ",", r.miss_named, ",",
                    r.energy_whole, ",", r.energy_named, ",", r.first_end, ",", r.second_begin, ",", r.second_passes,
-                   ",", r.seconds, ",", quoted(r.advice), "\n");
+                   ",", r.seconds, ",", csv_field(r.advice), "\n");
   return out;
 }
 
 std::string markdown(const std::vector<StretchRow>& rows) {
-  std::string out = head({"file", "case", "warps", "L2 error, whole: median", "by its option: median", "largest",
-                          "energy left, whole", "by its option", "advised", "seconds"});
+  std::string out = table_head({"file", "case", "warps", "L2 error, whole: median", "by its option: median", "largest",
+                                "energy left, whole", "by its option", "advised", "seconds"});
   for (std::size_t k = 0; k < rows.size();) {
     std::array<std::vector<double>, 5> values;
     std::size_t next = k;
@@ -192,10 +170,10 @@ std::string markdown(const std::vector<StretchRow>& rows) {
       advised += r.advice.empty() ? 0 : 1;
     }
     const Quantiles named = quantiles(values[1]);
-    out +=
-        line({rows[k].file, rows[k].content, std::to_string(next - k), scientific(quantiles(values[0]).median),
-              scientific(named.median), scientific(named.most), scientific(quantiles(values[2]).median),
-              scientific(quantiles(values[3]).median), std::to_string(advised), scientific(quantiles(values[4]).mean)});
+    out += table_line({rows[k].file, rows[k].content, std::to_string(next - k), scientific(quantiles(values[0]).median),
+                       scientific(named.median), scientific(named.most), scientific(quantiles(values[2]).median),
+                       scientific(quantiles(values[3]).median), std::to_string(advised),
+                       scientific(quantiles(values[4]).mean)});
     k = next;
   }
   return out;
