@@ -3,29 +3,11 @@
 #include "support/sphere_points.hpp"
 
 #include <dsns/geometry/curvature.hpp>
-#include <dsns/nn/fit.hpp>
 #include <dsns/surface/analytic.hpp>
 
 namespace curvature_test {
 
 using namespace dsns;
-
-namespace {
-
-/// A resting surface as a moving one, for the fit.
-struct Resting {
-  Ellipsoid shape;
-  template <class T>
-  Vec3<T> operator()(const Vec3<T>& s, const T&) const {
-    return shape(s);
-  }
-};
-
-double relative_rms_error(const Eigen::VectorXd& value, const Eigen::VectorXd& exact) {
-  return (value - exact).norm() / exact.norm();
-}
-
-}  // namespace
 
 TEST_CASE("Gaussian and mean curvature of ellipsoids are exact, at the poles and everywhere", "[geometry]") {
   const Mat3X s = test::sphere_points(200);
@@ -163,7 +145,7 @@ TEST_CASE("the shape operator is the change of the normal", "[law]") {
   const auto normals_at = [](const auto& surface, const Mat3X& s) {
     return unit_normals(tangents(surface, charts_at(s.colwise().normalized())));
   };
-  test::visit_smooth_surfaces([&](const std::string& name, const auto& surface) {
+  test::visit_smooth_surfaces([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     const SurfaceJets j = jets(surface, c);
     const TangentTensor S = shape_operator(j);
@@ -182,7 +164,7 @@ TEST_CASE("the shape operator is the change of the normal", "[law]") {
 
 TEST_CASE("curvatures do not depend on the frames of the charts", "[law]") {
   const ChartBatch c = charts_at(test::sphere_points()), turned = test::turned_frames(c, 0.7);
-  test::visit_smooth_surfaces([&](const std::string& name, const auto& surface) {
+  test::visit_smooth_surfaces([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     const Curvature a = curvature(jets(surface, c)), b = curvature(jets(surface, turned));
     CHECK(test::difference(a.gaussian, b.gaussian) < 1e-12);
@@ -197,7 +179,7 @@ TEST_CASE("curvatures are functions of the place: turned and reparametrised bodi
   const SphereDiffeomorphism gamma = random_diffeomorphism(6, 4, 0.15);
   const Mat3 O = rotation_exp(Vec3d(0.7, -0.2, 0.4));
   const Mat3X s = test::sphere_points(), images = gamma(s);
-  test::visit_formulas([&](const std::string& name, const auto& surface) {
+  test::visit_formulas([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     const PrincipalAxes a = principal_curvatures(rotated(reparametrized(surface, gamma), O), s),
                         b = principal_curvatures(surface, images);
@@ -206,31 +188,6 @@ TEST_CASE("curvatures are functions of the place: turned and reparametrised bodi
     for (Index i = 0; i < s.cols(); ++i)
       if (a.k1[i] - a.k2[i] > 1e-3) CHECK(std::abs(a.t1.col(i).dot(O * b.t1.col(i))) == Approx(1).epsilon(1e-12));
   });
-}
-
-TEST_CASE("the curvature of a fitted network approaches the ellipsoid's as the fit goes on", "[geometry]") {
-  const Resting body{{1, 1.3, 0.8}};
-  const Mat3X s = test::sphere_points(100);
-  Eigen::VectorXd exact(s.cols());
-  for (Index i = 0; i < s.cols(); ++i) exact[i] = gaussian_curvature(body.shape, s.col(i));
-  std::vector<double> errors;
-  for (const int steps : {30, 300, 1500}) {
-    FitOptions options;
-    options.width = 32;
-    options.points = 2000;
-    options.times = 8;
-    options.encoding.harmonic_degree = 4;  // high harmonics would learn positions first and curvature late
-    options.encoding.harmonic_decay = 2;
-    options.encoding.time_frequencies = 2;
-    options.batch = 256;
-    options.steps = steps;
-    const FitResult fit = fit_neural_surface(body, options);
-    errors.push_back(relative_rms_error(curvature(at_time(fit.surface, 0.5), s).gaussian, exact));
-  }
-  INFO("relative errors " << errors[0] << ", " << errors[1] << ", " << errors[2]);
-  CHECK(errors[1] < 0.7 * errors[0]);
-  CHECK(errors[2] < 0.7 * errors[1]);
-  CHECK(errors[2] < 0.1);
 }
 
 }  // namespace curvature_test

@@ -47,7 +47,7 @@ double brioschi(const MetricJet& m) {
 
 TEST_CASE("Theorema egregium: the metric alone gives the curvature of the shape operator", "[law]") {
   const ChartBatch c = charts_at(test::sphere_points(20));
-  test::visit_formulas([&](const std::string& name, const auto& surface) {
+  test::visit_formulas([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     const Eigen::VectorXd K = curvature(jets(surface, c)).gaussian;
     for (Index i = 0; i < c.size(); ++i)
@@ -57,7 +57,7 @@ TEST_CASE("Theorema egregium: the metric alone gives the curvature of the shape 
 
 TEST_CASE("the metric, its derivatives and Christoffel symbols are those of one fixed chart", "[law]") {
   const ChartBatch c = charts_at(test::sphere_points(20));
-  test::visit_formulas([&](const std::string& name, const auto& surface) {
+  test::visit_formulas([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     const SurfaceJets j = jets(surface, c);
     const FirstFundamentalForm I = first_fundamental_form(j);
@@ -88,7 +88,7 @@ TEST_CASE("the metric, its derivatives and Christoffel symbols are those of one 
 
 TEST_CASE("the second derivatives fall apart into Christoffel symbols and the second form", "[law]") {
   const ChartBatch c = charts_at(test::sphere_points(20));
-  test::visit_smooth_surfaces([&](const std::string& name, const auto& surface) {
+  test::visit_smooth_surfaces([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     const SurfaceJets j = jets(surface, c);
     const ChristoffelSymbols g = christoffel_symbols(j);

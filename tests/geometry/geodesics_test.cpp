@@ -91,7 +91,7 @@ TEST_CASE("geodesics have unit speed, turn only with the surface, and come back"
   options.samples = 9;
   constexpr double length = 0.08, h = length / 8;
   const Mat3X s = test::sphere_points(2);
-  test::visit_smooth_surfaces([&](const std::string& name, const auto& surface) {
+  test::visit_smooth_surfaces([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     for (const Index i : {0, 3, 6, 8, 9}) {
       const Geodesic g = geodesic(surface, s.col(i), Vec3d(0.5, 0.7, 0.3), length, options);

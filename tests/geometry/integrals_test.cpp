@@ -70,7 +70,7 @@ TEST_CASE("a sheared ball keeps its volume, and its centroid is a moment of the 
 
 TEST_CASE("Gauss-Bonnet and the divergence theorem hold for every surface", "[law]") {
   const SphereQuadrature q = sphere_quadrature(160);  // resolves the sharpest ripples to 1e-7
-  test::visit_smooth_surfaces([&](const std::string& name, const auto& surface) {
+  test::visit_smooth_surfaces([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     const SurfaceMeasures m = measure(surface, q);
     CHECK(m.total_curvature == Approx(4 * pi).epsilon(1e-6));
@@ -106,7 +106,7 @@ TEST_CASE("measures do not change under rotation and reparametrisation", "[law]"
   const Mat3 O = rotation_exp(Vec3d(0.7, -0.2, 0.4));
   const SphereDiffeomorphism gamma = random_diffeomorphism(6, 3, 0.08);
   const SphereQuadrature q = sphere_quadrature(160);
-  test::visit_formulas([&](const std::string& name, const auto& surface) {
+  test::visit_formulas([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     const SurfaceMeasures a = measure(surface, q), b = measure(rotated(reparametrized(surface, gamma), O), q);
     CHECK(b.area == Approx(a.area).epsilon(1e-9));

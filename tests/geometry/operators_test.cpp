@@ -89,7 +89,7 @@ TEST_CASE("gradients are closed forms, and div grad is the Laplacian", "[geometr
 
 TEST_CASE("the Laplacian of the position is -2 H n", "[law]") {
   const ChartBatch c = charts_at(test::sphere_points());
-  test::visit_formulas([&](const std::string& name, const auto& surface) {
+  test::visit_formulas([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     const SurfaceJets j = jets(surface, c);
     const Mat3X expected = unit_normals(j) * (-2 * curvature(j).mean).asDiagonal();
@@ -105,7 +105,7 @@ TEST_CASE("on closed surfaces divergences integrate to that of the normal part, 
   const ChartBatch c = charts_at(q.points);
   const FunctionJets<1> u = function_jets(Wave{}, c),
                         w = function_jets([](const auto&s) { return s.x() * s.y() + s.x(); }, c);
-  test::visit_smooth_surfaces([&](const std::string& name, const auto& surface) {
+  test::visit_smooth_surfaces([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     const SurfaceJets j = jets(surface, c);
     const Eigen::VectorXd area = area_densities(j).cwiseProduct(q.weights);
@@ -123,7 +123,7 @@ TEST_CASE("on closed surfaces divergences integrate to that of the normal part, 
 TEST_CASE("gradient, divergence and Laplacian do not depend on the frames of the charts", "[law]") {
   const ChartBatch c = charts_at(test::sphere_points()), turned = test::turned_frames(c, 0.7);
   const FunctionJets<1> u = function_jets(Wave{}, c), v = function_jets(Wave{}, turned);
-  test::visit_smooth_surfaces([&](const std::string& name, const auto& surface) {
+  test::visit_smooth_surfaces([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
     const SurfaceJets j = jets(surface, c), k = jets(surface, turned);
     CHECK(test::difference(surface_gradient(j, u), surface_gradient(k, v)) < 1e-12);

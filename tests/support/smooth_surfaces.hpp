@@ -3,9 +3,14 @@
 #include <dsns/elastic/registered_surface.hpp>
 #include <dsns/nn/neural_surface.hpp>
 #include <dsns/surface/analytic.hpp>
+#include <dsns/surface/any_surface.hpp>
 #include <dsns/surface/harmonic.hpp>
 
 #include "support/surfaces.hpp"
+
+#include <functional>
+#include <memory>
+#include <stdexcept>
 
 namespace dsns::test {
 
@@ -66,23 +71,89 @@ inline HarmonicSurface bumpy_harmonics() {
   return HarmonicSurface(c);
 }
 
-/// Calls visit(name, surface) for surfaces that take any scalar.
-template <class Visit>
-void visit_formulas(const Visit& visit) {
-  for_each_surface(visit);
-  visit("two limbs", StillBody{});
-  visit("harmonics", bumpy_harmonics());
-  visit("network", NeuralBody{});
+inline RegisteredSurface<LimbedBody> registered_limbs() {
+  static const LimbedBody body = two_limbs();
+  return {body, rotation_exp(Vec3d(0.3, 0.2, -0.9)), random_diffeomorphism(2, 3, 0.08)};
+}
+
+/// Two outer variables around two inner ones: what differentiates a metric twice.
+using MetricScalar = Dual<Jet2<double>, 2>;
+
+/// Any resting surface behind one type, so that a law is compiled once and not for each of them. Derivatives are the
+/// surface's own.
+class AnySurface {
+ public:
+  template <class S>
+  requires(Surface<S> && !std::is_same_v<S, AnySurface>) explicit AnySurface(S surface)
+      : surface_(std::make_shared<Model<S>>(std::move(surface))) {}
+
+  Vec3d operator()(const Vec3d& s) const { return surface_->value(s); }
+  Vec3<detail::SpatialJet> operator()(const Vec3<detail::SpatialJet>& s) const { return surface_->value(s); }
+  Vec3<MetricScalar> operator()(const Vec3<MetricScalar>& s) const { return surface_->value(s); }
+  SurfaceJets jets(const ChartBatch& c) const { return surface_->jets(c); }
+  SurfaceTangents tangents(const ChartBatch& c) const { return surface_->tangents(c); }
+  Mat3X positions(const Mat3X& s) const { return surface_->positions(s); }
+
+ private:
+  struct Interface {
+    virtual ~Interface() = default;
+    virtual Vec3d value(const Vec3d& s) const = 0;
+    virtual Vec3<detail::SpatialJet> value(const Vec3<detail::SpatialJet>& s) const = 0;
+    virtual Vec3<MetricScalar> value(const Vec3<MetricScalar>& s) const = 0;
+    virtual SurfaceJets jets(const ChartBatch& c) const = 0;
+    virtual SurfaceTangents tangents(const ChartBatch& c) const = 0;
+    virtual Mat3X positions(const Mat3X& s) const = 0;
+  };
+  template <class S>
+  struct Model final : Interface {
+    explicit Model(S s) : surface(std::move(s)) {}
+    Vec3d value(const Vec3d& s) const override { return surface(s); }
+    Vec3<detail::SpatialJet> value(const Vec3<detail::SpatialJet>& s) const override { return called(s); }
+    Vec3<MetricScalar> value(const Vec3<MetricScalar>& s) const override { return called(s); }
+    SurfaceJets jets(const ChartBatch& c) const override { return dsns::jets(surface, c); }
+    SurfaceTangents tangents(const ChartBatch& c) const override { return dsns::tangents(surface, c); }
+    Mat3X positions(const Mat3X& s) const override { return dsns::positions(surface, s); }
+
+    template <class T>
+    Vec3<T> called(const Vec3<T>& s) const {
+      if constexpr (requires {
+                      { surface(s) } -> std::same_as<Vec3<T>>;
+                    })
+        return surface(s);
+      else
+        throw std::logic_error("this surface knows its derivatives in batches only");
+    }
+    S surface;
+  };
+
+  std::shared_ptr<const Interface> surface_;
+};
+
+using SurfaceVisitor = std::function<void(const std::string&, const AnySurface&)>;
+
+/// Calls visit(name, surface) for surfaces that take the scalars of AnySurface.
+inline void visit_formulas(const SurfaceVisitor& visit) {
+  for_each_surface([&](const std::string& name, const auto& surface) { visit(name, AnySurface(surface)); });
+  visit("two limbs", AnySurface(StillBody{}));
+  visit("harmonics", AnySurface(bumpy_harmonics()));
+  visit("network", AnySurface(NeuralBody{}));
 }
 
 /// Those and views of moving surfaces.
-template <class Visit>
-void visit_smooth_surfaces(const Visit& visit) {
+inline void visit_smooth_surfaces(const SurfaceVisitor& visit) {
   visit_formulas(visit);
-  const LimbedBody body = two_limbs();
-  visit("at a time", at_time(body, 0.6));
-  const RegisteredSurface view(body, rotation_exp(Vec3d(0.3, 0.2, -0.9)), random_diffeomorphism(2, 3, 0.08));
-  visit("registered", at_time(view, 0.6));
+  visit("at a time", AnySurface(at_time(two_limbs(), 0.6)));
+  visit("registered", AnySurface(at_time(registered_limbs(), 0.6)));
+}
+
+using MotionVisitor = std::function<void(const std::string&, const AnyAnimatedSurface&)>;
+
+/// Calls visit(name, surface) for moving surfaces of every kind, analytic and registered.
+inline void visit_motions(const MotionVisitor& visit) {
+  for_each_moving_surface(
+      [&](const std::string& name, const auto& surface) { visit(name, AnyAnimatedSurface(surface)); });
+  visit("two limbs", AnyAnimatedSurface(two_limbs()));
+  visit("registered", AnyAnimatedSurface(registered_limbs()));
 }
 
 /// Charts at the same points with every frame turned by `angle`.
