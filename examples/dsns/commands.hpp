@@ -22,8 +22,18 @@ void register_two(const Body& first, const Body& second, const std::filesystem::
 /// What a geodesic goes between: bodies registered in space and time, or, to see the difference, as their sphere maps and clocks
 /// have them.
 enum class GeodesicEnds { registered, as_they_are };
-void geodesic(const Body& first, const Body& second, const std::filesystem::path& out, int steps, GeodesicEnds ends,
-              const Settings& settings, Report& report);
+/// What the way between leads through: curves in the space of joint principal components, or square-root normal fields, each
+/// time by itself, sent back to surfaces.
+enum class GeodesicPath { components, srnf };
+struct GeodesicOptions {
+  int steps = 5;
+  GeodesicEnds ends = GeodesicEnds::registered;
+  GeodesicPath path = GeodesicPath::components;
+  int degree = 12;                  ///< of the harmonics of the path through fields
+  std::filesystem::path out, each;  ///< one file with all steps; a folder with a file for each; or empty
+};
+void geodesic(const Body& first, const Body& second, const GeodesicOptions& options, const Settings& settings,
+              Report& report);
 /// The motion of the first on the second, each triangle deformed as the corresponding piece of the first is from where both
 /// stand alike; `own` is the second's.
 void transfer(const Body& first, const Body& second, const std::filesystem::path& out, const std::filesystem::path& own,

@@ -78,7 +78,9 @@ void demo(std::vector<std::string> sources, const std::filesystem::path& folder,
   register_two(bodies[0], bodies[1], folder / "registered.glb", {}, settings, report);
   report.say("\nGeodesic from the first to the second:");
   report.section("geodesic");
-  geodesic(bodies[0], bodies[1], folder / "geodesic.glb", 5, GeodesicEnds::registered, settings, report);
+  GeodesicOptions way;
+  way.out = folder / "geodesic.glb";
+  geodesic(bodies[0], bodies[1], way, settings, report);
   report.say("\nThe mean of all:");
   report.section("mean");
   mean(bodies, folder / "mean.glb", folder / "overview.glb", {}, settings, report);

@@ -190,7 +190,7 @@ int main(int argc, char** argv) {
   Report report;
   std::vector<std::string> sources;
   std::string out, overview, own;
-  int steps = 5, unusable = 0;
+  int unusable = 0;
   RepresentationEvaluation evaluation;
   TemporalEvaluation temporal;
   bool pairs = false, stretches = false;
@@ -413,19 +413,28 @@ int main(int argc, char** argv) {
   register_command->get_option("--start")->needs(only);
   add_registration(register_command, settings);
 
-  GeodesicEnds ends = GeodesicEnds::registered;
+  GeodesicOptions way;
   CLI::App* geodesic_command = command("geodesic", "the way from one animation to another, and their distance", [&] {
     const std::vector<Body> bodies = load(sources, settings, report, 2);
-    geodesic(bodies[0], bodies[1], out, steps, ends, settings, report);
+    way.out = out;
+    geodesic(bodies[0], bodies[1], way, settings, report);
   });
   geodesic_command->add_option("FILES", sources, "two animations")->required()->expected(2);
   geodesic_command->add_option("-o,--output", out, "write the way to this GLB, side by side");
-  add_choice(geodesic_command, "--ends", ends,
+  add_choice(geodesic_command, "--ends", way.ends,
              {{"registered", GeodesicEnds::registered}, {"as-they-are", GeodesicEnds::as_they_are}},
              "as-they-are: without registration, to see what it is for");
-  geodesic_command->add_option("--points", steps, "animations along the way, ends included")
+  geodesic_command->add_option("--points", way.steps, "animations along the way, ends included")
       ->capture_default_str()
       ->check(CLI::Range(2, 50));
+  geodesic_command->add_option("--each", way.each, "write each of them to a GLB of its own in this folder");
+  add_choice(geodesic_command, "--path", way.path,
+             {{"components", GeodesicPath::components}, {"srnf", GeodesicPath::srnf}},
+             "components: through curves in the space of principal components; srnf: through square-root normal "
+             "fields, sent back to surfaces time by time");
+  geodesic_command->add_option("--degree", way.degree, "of the harmonics of --path srnf; above it ends are mixed")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 20));
   add_registration(geodesic_command, settings);
 
   CLI::App* transfer_command = command("transfer", "the motion of the first animation on the body of the second", [&] {

@@ -6,8 +6,27 @@
 
 namespace dsns::program {
 
+RegistrationOptions registration_options(const Body& first, const Settings& settings);
+
 MovingRegistration register_bodies(const Body& first, const Body& second, const Settings& settings,
                                    const Progress& progress);
+
+/// What the registration did, and where its figures say that the result is doubtful.
+void report_registration(const MovingRegistration& registration, Report& report);
+void say_not_written(Report& report, const std::string& option = "-o FILE.glb");
+void say_units(Report& report);
+
+/// A body as it is, on its own triangles, with its own motion.
+MeshSequence as_represented(const Body& body, int frames);
+/// Frames of the body on another's sphere mesh and clock. The sphere's points are moved once for all times.
+std::vector<Mat3X> registered_frames(const Body& body, const MovingRegistration& registration, const Mat3X& sphere,
+                                     int frames);
+/// Where the body's root goes along the registered times, from its place at the first of them; another pass goes on where the
+/// last ended.
+Mat3X registered_trajectory(const Body& body, const MovingRegistration& registration, int frames);
+/// The same as a mesh with size and motion.
+MeshSequence registered(const Body& body, const MovingRegistration& registration, const TriangleMesh& sphere,
+                        int frames);
 
 /// The mean of bodies with what the sizes and the ways of their roots are in the mean.
 struct BodiesMean {

@@ -52,9 +52,8 @@ std::string table_2(const RepresentationTable& table) {
                                 "ratio", "CPU-seconds"});
   for (const auto& [file, f, others] : table.rows)
     if (others)
-      out +=
-          table_line({file, scientific(f.error.msd), scientific(others->msd), scientific(others->msd_interpolation),
-                      fixed(others->ratio(), 2), fixed(others->fit.cpu_seconds, 1)});
+      out += table_line({file, scientific(f.error.msd), scientific(others->msd), scientific(others->msd_interpolation),
+                         fixed(others->ratio(), 2), fixed(others->fit.cpu_seconds, 1)});
   for (const Published& p : published)
     out += table_line({std::string("paper, ") + p.data + " (30 frames)", scientific(p.table_2_all),
                        scientific(p.table_2_few), "-", "-", "-"});

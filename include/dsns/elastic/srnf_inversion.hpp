@@ -67,8 +67,8 @@ class SrnfInversion {
         State next = at(trial, field);
         better = next.energy < state.energy;
         if (better) {
-          result.converged = std::sqrt(next.energy) > (1 - options.tolerance) * std::sqrt(state.energy) ||
-                             next.energy < 1e-22 * norm;
+          result.converged =
+              std::sqrt(next.energy) > (1 - options.tolerance) * std::sqrt(state.energy) || next.energy < 1e-22 * norm;
           c = std::move(trial);
           state = std::move(next);
           damping = std::max(damping / 10, 1e-14);
@@ -122,8 +122,8 @@ class SrnfInversion {
         const Index i = first + j;
         const Vec3d normal = s.normal.col(i);
         const double density = std::max(normal.norm(), 1e-300), root = std::sqrt(weights_[i]);
-        const Mat3 A = (Mat3::Identity() - normal * normal.transpose() / (2 * density * density)) *
-                       (root / std::sqrt(density));
+        const Mat3 A =
+            (Mat3::Identity() - normal * normal.transpose() / (2 * density * density)) * (root / std::sqrt(density));
         const Mat3 by_u = -A * cross_matrix(s.fv.col(i)), by_v = A * cross_matrix(s.fu.col(i));
         for (int a = 0; a < 3; ++a) {
           values[a * count + j] = root * s.difference(a, i);

@@ -14,9 +14,12 @@ struct RegistrationOptions {
   TemporalOptions temporal;
   PcaOptions pca;
   int spatial_times = 5;  ///< spatial registration compares the surfaces at this many times
-  int rounds = 2;         ///< each further round refines, in space and in time
-  int snapshots = 32;     ///< times a sequence gives to the principal components
-  int velocities = 128;   ///< intervals at which its velocity is evaluated
+  /// At most. After the first each refines, in space and in time, until the clock does not move: then space would meet the
+  /// problem that it has just solved.
+  int rounds = 4;
+  double clock_settled = 1e-3;  ///< L2 from one round to the next, in shares of the clip
+  int snapshots = 32;           ///< times a sequence gives to the principal components
+  int velocities = 128;         ///< intervals at which its velocity is evaluated
 };
 
 /// The second moving surface F2 is brought to the first by O F2(gamma(s), temporal.second_time(t)), which stands beside
@@ -24,6 +27,8 @@ struct RegistrationOptions {
 struct MovingRegistration {
   SpatialResult spatial;
   TemporalResult temporal;
+  int rounds = 0;          ///< of space and time
+  double clock_moved = 0;  ///< in the last round: L2, in shares of the clip
 };
 
 /// A moving surface on the vertices of a sphere mesh, seen through its spatial registration but at its own times.
@@ -122,7 +127,9 @@ MovingRegistration register_moving(const F1& first, const F2& second, const Tria
   const auto first_time = [&](double t) { return result.temporal.first_time(t); };
   const auto second_time = [&](double t) { return result.temporal.second_time(t); };
   const SurfaceSamples target_samples = sample(first, {}, sphere.vertices, options);
-  for (int round = 0; round < std::max(1, options.rounds); ++round) {
+  const auto settled = [&] { return result.rounds > 1 && result.clock_moved < options.clock_settled; };
+  for (int round = 0; round < std::max(1, options.rounds) && !settled(); ++round) {
+    const TimeWarp clock = result.temporal.warp;
     if (round == 0)
       result.spatial = register_harmonic(detail::harmonic_stack(first, options),
                                          detail::harmonic_stack(second, options), options.spatial, progress);
@@ -131,7 +138,9 @@ MovingRegistration register_moving(const F1& first, const F2& second, const Tria
     const std::vector<SurfaceSamples> samples{target_samples, sample(second, result.spatial, sphere.vertices, options)};
     const FunctionalPca pca = joint_pca(samples, sphere, options);
     result.temporal = register_temporally(shape_curve(samples[0], pca), shape_curve(samples[1], pca), options.temporal);
-    report(progress, "temporal registration", double(round + 1) / options.rounds);
+    result.rounds = round + 1;
+    result.clock_moved = distance(clock, result.temporal.warp);
+    report(progress, "temporal registration", settled() ? 1 : double(round + 1) / options.rounds);
   }
   return result;
 }
