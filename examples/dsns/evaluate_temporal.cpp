@@ -122,7 +122,8 @@ int evaluate_temporal(const std::vector<std::string>& sources, const Settings& s
     report.say(
         "Distances: root of the elastic energy of the curves of joint principal components; every body has a mean area "
         "of 1.\nTiming: RMS error of the warp, in shares of the clip, where both perform one clip and the second was "
-        "warped.\nFoot strikes: mean error of the warp at them, where the clips differ and both bodies walk.");
+        "warped.\nEvents: mean error of the warp at foot strikes, or at the opening and closing of jaws, where the "
+        "clips differ.");
     write_tables(comparison.rows, evaluation, report);
     return comparison.failures;
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// When a walking body's feet strike the ground, from its mesh alone.
+/// When a body does something that another does too, from its mesh alone.
 #include "bodies.hpp"
 
 #include <array>
@@ -7,9 +7,11 @@
 
 namespace dsns::program {
 
-/// Times in [0, 1] at which the left and the right foot are farthest ahead of the body, which is when heels strike; none for a
-/// foot that is so at the ends of the clip, and for bodies that do not go anywhere. y is up.
-/// source   Zeni, Richards, Higginson 2008
-std::array<std::optional<double>, 2> foot_strikes(const Body& body);
+/// Times in [0, 1], or nothing where the body does not do it.
+using Landmarks = std::array<std::optional<double>, 2>;
+
+/// Of a body that goes somewhere, strikes of the left and the right foot; of one that opens its jaw, the opening and the
+/// closing. y is up.
+Landmarks landmarks(const Body& body);
 
 }  // namespace dsns::program

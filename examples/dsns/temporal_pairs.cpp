@@ -26,8 +26,8 @@ struct Events {
   std::vector<std::array<double, 2>> times;
 };
 
-Events common_strikes(const Body& a, const Body& b) {
-  const auto first = foot_strikes(a), second = foot_strikes(b);
+Events common_events(const Body& a, const Body& b) {
+  const auto first = landmarks(a), second = landmarks(b);
   Events out;
   for (const std::size_t k : {0u, 1u})
     if (first[k] && second[k]) out.times.push_back({*first[k], *second[k]});
@@ -47,7 +47,7 @@ void compare_pair(const PairRow& names, const Curve& first, const Curve& second,
     if (truth == nullptr && !events.times.empty()) {
       double sum = 0;
       for (const auto& [t1, t2] : events.times) sum += std::abs(warp(t1) - t2);
-      row.strikes = sum / double(events.times.size());
+      row.events = sum / double(events.times.size());
     }
     row.seconds = seconds;
     rows.push_back(row);
@@ -113,7 +113,7 @@ void compare_bodies(const Body& a, const Body& b, const std::string& name_a, con
   const PairRow names{name_a, name_b, {}, 0, 0, {}, {}, 0};
   const std::string clip = parse_source(name_a).clip;
   if (!same || clip.empty() || clip != parse_source(name_b).clip)
-    return compare_pair(names, first, second, nullptr, common_strikes(a, b), rows);
+    return compare_pair(names, first, second, nullptr, common_events(a, b), rows);
   for (int k = 0; k < evaluation.warps; ++k) {
     const TimeWarp truth = random_pace(evaluation, k, settings);
     compare_pair(names, first, warped(second, truth), &truth, {}, rows);
@@ -160,7 +160,7 @@ PairComparison compare_pairs(const std::vector<std::string>& names, const Settin
     report.note("samples", std::int64_t(row.samples));
     report.note("distance", row.distance);
     if (row.timing) report.note("timing", *row.timing);
-    if (row.strikes) report.note("foot_strikes", *row.strikes);
+    if (row.events) report.note("events", *row.events);
     report.note("seconds", row.seconds);
   }
   return out;

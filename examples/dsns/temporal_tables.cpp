@@ -87,13 +87,13 @@ std::vector<PairGroup> groups(const std::vector<PairRow>& rows) {
     auto& mine = values[std::size_t(group - out.begin())];
     mine[0].push_back(row.distance);
     if (row.timing) mine[1].push_back(*row.timing);
-    if (row.strikes) mine[2].push_back(*row.strikes);
+    if (row.events) mine[2].push_back(*row.events);
     mine[3].push_back(row.seconds);
   }
   for (std::size_t k = 0; k < out.size(); ++k) {
     out[k].distance = quantiles(values[k][0]);
     out[k].timing = quantiles(values[k][1]);
-    out[k].strikes = quantiles(values[k][2]);
+    out[k].events = quantiles(values[k][2]);
     out[k].seconds = quantiles(values[k][3]);
   }
   return out;
@@ -108,10 +108,10 @@ std::string csv(const std::vector<RecoveryRow>& rows) {
 }
 
 std::string csv(const std::vector<PairRow>& rows) {
-  std::string out = "first,second,method,samples,distance,timing,foot_strikes,seconds\n";
+  std::string out = "first,second,method,samples,distance,timing,events,seconds\n";
   for (const PairRow& r : rows)
     out += message(csv_field(r.first), ",", csv_field(r.second), ",", r.method, ",", r.samples, ",", r.distance, ",",
-                   r.timing ? message(*r.timing) : std::string(), ",", r.strikes ? message(*r.strikes) : std::string(),
+                   r.timing ? message(*r.timing) : std::string(), ",", r.events ? message(*r.events) : std::string(),
                    ",", r.seconds, "\n");
   return out;
 }
@@ -128,7 +128,7 @@ std::string markdown(const std::vector<RecoveryRow>& rows) {
 std::string markdown(const std::vector<PairRow>& rows) {
   std::string out =
       table_head({"method", "pairs", "distance: mean", "standard deviation", "median", "timing: warps known", "mean",
-                  "median", "largest", "foot strikes: pairs", "mean", "median", "seconds"});
+                  "median", "largest", "events: pairs", "mean", "median", "seconds"});
   const auto cells = [](const Quantiles& q, std::initializer_list<double> values) {
     std::vector<std::string> text{std::to_string(q.count)};
     for (const double x : values) text.push_back(q.count > 0 ? scientific(x) : "-");
@@ -138,7 +138,7 @@ std::string markdown(const std::vector<PairRow>& rows) {
     std::vector<std::string> row{g.label};
     for (const auto& part : {cells(g.distance, {g.distance.mean, g.distance.std, g.distance.median}),
                              cells(g.timing, {g.timing.mean, g.timing.median, g.timing.most}),
-                             cells(g.strikes, {g.strikes.mean, g.strikes.median})})
+                             cells(g.events, {g.events.mean, g.events.median})})
       row.insert(row.end(), part.begin(), part.end());
     row.push_back(scientific(g.seconds.mean));
     out += table_line(row);

@@ -24,8 +24,8 @@ struct PairRow {
   std::string method;  ///< before, dp, ours
   int samples = 0;     ///< of the dynamic programming
   double distance = 0;
-  std::optional<double> timing;   ///< RMS error at the frames of a clip that both perform, in shares of the clip
-  std::optional<double> strikes;  ///< mean error at foot strikes, likewise
+  std::optional<double> timing;  ///< RMS error at the frames of a clip that both perform, in shares of the clip
+  std::optional<double> events;  ///< mean error at foot strikes or jaw openings, likewise
   double seconds = 0;
 };
 
@@ -58,7 +58,7 @@ std::vector<RecoveryGroup> groups(const std::vector<RecoveryRow>& rows);
 struct PairGroup {
   std::string label, method;
   int samples = 0;
-  Quantiles distance, timing, strikes, seconds;
+  Quantiles distance, timing, events, seconds;
 };
 std::vector<PairGroup> groups(const std::vector<PairRow>& rows);
 
