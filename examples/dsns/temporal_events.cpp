@@ -45,9 +45,9 @@ Landmarks foot_strikes(const Body& body) {
 }
 
 /// Times at which a chin has first come half way down and is last half way up again; none for a body whose lowest-going part
-/// goes down by less than a tenth of the root of its area, or is not up again at the end.
+/// goes down by less than 3 % of the root of its area, or is not up again at the end.
 Landmarks jaw_openings(const Body& body) {
-  constexpr double far = 0.1;
+  constexpr double far = 0.03;
   constexpr double chin = 0.02;  // of the vertices, those that go down most
   const std::vector<Mat3X>& frames = body.normalized.sequence.frames;
   const Index n = frames.front().cols();
