@@ -1,4 +1,4 @@
-// register, geodesic, transfer, mean: what is said of several animations.
+// register, geodesic, transfer: what is said of two animations.
 #include "commands.hpp"
 #include "registration.hpp"
 #include "scene.hpp"
@@ -7,12 +7,49 @@
 #include <dsns/mesh/sphere_mask.hpp>
 #include <dsns/sphere/sphere_map.hpp>
 #include <dsns/stats/moving_mean.hpp>
+#include <dsns/stats/principal_modes.hpp>
 
 #include <numeric>
 
 namespace dsns::program {
 
 namespace {
+
+/// Frames of the body on another's sphere mesh and clock. The sphere's points are moved once for all times.
+std::vector<Mat3X> registered_frames(const Body& body, const MovingRegistration& r, const Mat3X& sphere, int frames) {
+  const Mat3X y = r.spatial.gamma(sphere);
+  std::vector<Mat3X> out;
+  for (int k = 0; k < frames; ++k)
+    out.push_back(r.spatial.rotation * positions(body.surface, y, r.temporal.second_time(double(k) / (frames - 1))));
+  return out;
+}
+
+/// Where the body's root goes along the registered times, from its place at the first of them; another pass goes on where the
+/// last ended.
+Mat3X registered_trajectory(const Body& body, const MovingRegistration& r, int frames) {
+  const NormalizedSequence& n = body.normalized;
+  const CubicSpline spline(n.trajectory.cols());
+  const Vec3d pass = n.trajectory.rightCols<1>() - n.trajectory.leftCols<1>();
+  Mat3X out(3, frames);
+  for (int k = 0; k < frames; ++k) {
+    const double z = r.temporal.warp(double(k) / (frames - 1)), t = r.temporal.second(z);
+    const double passes = std::round(r.temporal.second.begin + r.temporal.second.length * z - t);
+    out.col(k) = n.trajectory * spline.weights(t) + passes * pass;
+  }
+  return r.spatial.rotation * (out.colwise() - Vec3d(out.col(0))) / n.scale;
+}
+
+/// Root mean square angle between gamma and the rotation nearest to it, degrees.
+double warp_beside_turn(const SphereDiffeomorphism& gamma) {
+  const SphereQuadrature q = sphere_quadrature(40);
+  const Mat3X y = gamma(q.points);
+  const Mat3 turn = nearest_rotation(y * q.weights.asDiagonal() * q.points.transpose());
+  return angular_distance(y, turn * q.points, q.weights).rms * 180 / pi;
+}
+
+double mix(double a, double b, double tau) { return (1 - tau) * a + tau * b; }
+
+}  // namespace
 
 RegistrationOptions registration_options(const Body& first, const Settings& settings) {
   RegistrationOptions options;
@@ -52,7 +89,7 @@ void report_registration(const MovingRegistration& r, Report& report) {
     note("the clocks hardly agree (the slope is at its limit); do both clips start at the same phase?");
 }
 
-void say_not_written(Report& report, const std::string& option = "-o FILE.glb") {
+void say_not_written(Report& report, const std::string& option) {
   report.say("  No animation was written: give " + option + " for one.");
 }
 
@@ -60,55 +97,17 @@ void say_units(Report& report) {
   report.say("  Root motion is removed first, and the mean area of every body is 1: energies are in these units.");
 }
 
-/// A body as it is, on its own triangles, with its own motion.
 MeshSequence as_represented(const Body& body, int frames) {
   const auto& n = body.normalized;
   return denormalize(frames_of(body.surface, body.sphere.vertices, frames), n.sequence.faces,
                      relative_trajectory(n, {}, frames), n.scale, n.sequence.duration, n.sequence.name);
 }
 
-/// Frames of the body on another's sphere mesh and clock. The sphere's points are moved once for all times.
-std::vector<Mat3X> registered_frames(const Body& body, const MovingRegistration& r, const Mat3X& sphere, int frames) {
-  const Mat3X y = r.spatial.gamma(sphere);
-  std::vector<Mat3X> out;
-  for (int k = 0; k < frames; ++k)
-    out.push_back(r.spatial.rotation * positions(body.surface, y, r.temporal.second_time(double(k) / (frames - 1))));
-  return out;
-}
-
-/// Where the body's root goes along the registered times, from its place at the first of them; another pass goes on where the
-/// last ended.
-Mat3X registered_trajectory(const Body& body, const MovingRegistration& r, int frames) {
-  const NormalizedSequence& n = body.normalized;
-  const CubicSpline spline(n.trajectory.cols());
-  const Vec3d pass = n.trajectory.rightCols<1>() - n.trajectory.leftCols<1>();
-  Mat3X out(3, frames);
-  for (int k = 0; k < frames; ++k) {
-    const double z = r.temporal.warp(double(k) / (frames - 1)), t = r.temporal.second(z);
-    const double passes = std::round(r.temporal.second.begin + r.temporal.second.length * z - t);
-    out.col(k) = n.trajectory * spline.weights(t) + passes * pass;
-  }
-  return r.spatial.rotation * (out.colwise() - Vec3d(out.col(0))) / n.scale;
-}
-
-/// The same as a mesh with size and motion.
 MeshSequence registered(const Body& body, const MovingRegistration& r, const TriangleMesh& sphere, int frames) {
   return denormalize(registered_frames(body, r, sphere.vertices, frames), sphere.faces,
                      registered_trajectory(body, r, frames), body.normalized.scale,
                      r.temporal.second.length * body.normalized.sequence.duration, body.normalized.sequence.name);
 }
-
-/// Root mean square angle between gamma and the rotation nearest to it, degrees.
-double warp_beside_turn(const SphereDiffeomorphism& gamma) {
-  const SphereQuadrature q = sphere_quadrature(40);
-  const Mat3X y = gamma(q.points);
-  const Mat3 turn = nearest_rotation(y * q.weights.asDiagonal() * q.points.transpose());
-  return angular_distance(y, turn * q.points, q.weights).rms * 180 / pi;
-}
-
-double mix(double a, double b, double tau) { return (1 - tau) * a + tau * b; }
-
-}  // namespace
 
 MovingRegistration register_bodies(const Body& first, const Body& second, const Settings& settings,
                                    const Progress& progress) {
@@ -224,79 +223,6 @@ void transfer(const Body& a, const Body& b, const std::filesystem::path& out, co
   scene.write(out);
   report.say("  Side by side: the first, the second, the second moving as the first. Colours correspond.");
   report.wrote("transfer", out);
-}
-
-MeshSequence BodiesMean::animation(const Eigen::MatrixXd& points, const Faces& faces, const std::string& name) const {
-  return denormalize(moving.frames(points, static_cast<int>(way.cols())), faces, way, scale, duration, name);
-}
-
-BodiesMean mean_of_bodies(const std::vector<Body>& bodies, const Settings& settings, Report& report) {
-  ProgressLine line;
-  MovingMeanOptions options;
-  options.registration = registration_options(bodies.front(), settings);
-  options.karcher.threads = settings.threads;
-  std::vector<AnyAnimatedSurface> surfaces;
-  for (const auto& body : bodies) surfaces.push_back(body.surface);
-  BodiesMean mean{mean_of_moving(surfaces, bodies.front().sphere, options, std::ref(line)),
-                  Mat3X::Zero(3, settings.frames)};
-  const MovingMean& m = mean.moving;
-  const std::string section = report.section();
-  for (std::size_t i = 1; i < bodies.size(); ++i) {
-    report.say(bodies[i].normalized.sequence.name + " registered to " + bodies[0].normalized.sequence.name + ":");
-    report.section(message(section, section.empty() ? "" : ".", "registrations.", i));
-    report_registration(m.registrations[i], report);
-  }
-  report.section(section);
-  report.say("Mean:");
-  const KarcherSummary& summary = m.curves.summary;
-  report.figure("components", "principal components", m.pca.modes());
-  report.figure("components_residual", "mean squared error they leave", m.pca.residual());
-  report.figure("energy", "energy before any warp and by iteration", summary.energy);
-  report.figure("min_slope", "smallest slope of the time warps", summary.min_slope);
-  report.figure("converged", "converged", summary.converged);
-  say_units(report);
-  const double share = 1 / double(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    mean.way += share * m.registrations[i].spatial.rotation *
-                relative_trajectory(bodies[i].normalized, m.curves.warps[i], settings.frames);
-    mean.scale += share * bodies[i].normalized.scale;
-    mean.duration += share * bodies[i].normalized.sequence.duration;
-  }
-  return mean;
-}
-
-void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, const std::filesystem::path& overview,
-          const std::filesystem::path& own, const Settings& settings, Report& report) {
-  const BodiesMean mean = mean_of_bodies(bodies, settings, report);
-  if (out.empty() && overview.empty() && own.empty())
-    return say_not_written(report, "-o FILE.glb or --overview FILE.glb");
-
-  const TriangleMesh& sphere = bodies.front().sphere;
-  const KarcherMean& curves = mean.moving.curves;
-  const MeshSequence result = mean.animation(integrate_srvf(curves.start, curves.q, time_grid()), sphere.faces, "mean");
-  if (!out.empty()) {
-    Scene alone;
-    alone.add(result);
-    alone.write(out);
-    report.wrote("mean", out);
-  }
-  if (!own.empty()) {
-    write_on_own_mesh(own, bodies.front(), result, settings);
-    report.wrote("own_mesh", own);
-  }
-  if (overview.empty()) return;
-  Scene all;
-  const Mat3X colors = place_colors(bodies.front(), sphere.vertices);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    MovingRegistration r = mean.moving.registrations[i];
-    r.temporal.warp = curves.warps[i];
-    all.add(registered(bodies[i], r, sphere, settings.frames), colors);
-  }
-  all.add(result, colors);
-  all.write(overview);
-  report.say(
-      "  Side by side: every body on the first's triangles and the mean's clock, the mean last. Colours correspond.");
-  report.wrote("overview", overview);
 }
 
 }  // namespace dsns::program
