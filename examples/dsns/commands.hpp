@@ -49,8 +49,8 @@ struct Study {
 /// The principal modes of the bodies around their mean, each as an animation of -3 to 3 standard deviations side by side.
 void modes(const Group& group, const Study& study, const Settings& settings, Report& report);
 /// Random members of the group, and how many of them are valid: no triangle turned over, time that goes forward.
-void sample_bodies(const Group& group, const Study& study, const std::filesystem::path& out,
-                   const Settings& settings, Report& report);
+void sample_bodies(const Group& group, const Study& study, const std::filesystem::path& out, const Settings& settings,
+                   Report& report);
 /// Who is near whom, and what labels and a covariate explain.
 void distances(const Group& group, const Study& study, const Settings& settings, Report& report);
 struct RepresentationEvaluation {

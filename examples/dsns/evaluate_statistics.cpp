@@ -73,7 +73,8 @@ Row evaluate(std::size_t copies, const StatisticsEvaluation& evaluation, const S
   const int frames = settings.frames;
   std::vector<Mat3X> original;
   for (const double t : equidistant_times(frames)) original.push_back(positions(body, sphere.vertices, t));
-  const double size = rms_distance(original, std::vector<Mat3X>(original.size(), Mat3X::Zero(3, sphere.vertices.cols())));
+  const double size =
+      rms_distance(original, std::vector<Mat3X>(original.size(), Mat3X::Zero(3, sphere.vertices.cols())));
   std::vector<AnyAnimatedSurface> surfaces;
   std::vector<TimeWarp> clocks;
   for (std::size_t i = 0; i < copies; ++i) {
@@ -95,7 +96,7 @@ Row evaluate(std::size_t copies, const StatisticsEvaluation& evaluation, const S
   const RegisteredSurface back(truth, r.spatial.rotation, r.spatial.gamma, r.temporal.warp);
   std::vector<Mat3X> expected;
   for (const double t : equidistant_times(frames)) expected.push_back(positions(back, m.sphere.vertices, t));
-  Row row{copies, 0, rms_distance(m.frames(frames), expected) / size, 0, 0, seconds.count(), m.group.summary,
+  Row row{copies,          0, rms_distance(m.frames(frames), expected) / size, 0, 0, seconds.count(), m.group.summary,
           m.curves.summary};
   for (std::size_t i = 0; i < copies; ++i) {
     row.warps = std::max(row.warps, distance(compose(clocks[i], m.curves.warps[i]), r.temporal.warp));
@@ -104,20 +105,20 @@ Row evaluate(std::size_t copies, const StatisticsEvaluation& evaluation, const S
   if (copies > std::size_t(evaluation.reordered)) return row;
   std::vector<AnyAnimatedSurface> shuffled = surfaces;
   std::rotate(shuffled.begin(), shuffled.begin() + std::ptrdiff_t(copies / 2 + copies % 2), shuffled.end());
-  row.order = rms_distance(mean_of_moving(shuffled, sphere, options, std::ref(line)).frames(frames), m.frames(frames)) / size;
+  row.order =
+      rms_distance(mean_of_moving(shuffled, sphere, options, std::ref(line)).frames(frames), m.frames(frames)) / size;
   return row;
 }
 
-bool never_rises(const std::vector<double>& energy) {
-  return std::is_sorted(energy.rbegin(), energy.rend());
-}
+bool never_rises(const std::vector<double>& energy) { return std::is_sorted(energy.rbegin(), energy.rend()); }
 
 }  // namespace
 
 void evaluate_statistics(const StatisticsEvaluation& evaluation, const Settings& settings, Report& report) {
-  std::string table = table_head({"copies", "original to mean, of its size", "warps of time, largest L2 error",
-                                  "other order, of the size", "energy of shapes: as they are, at the template, at the end",
-                                  "energy of motions before, after", "iterations", "never rises", "seconds"});
+  std::string table =
+      table_head({"copies", "original to mean, of its size", "warps of time, largest L2 error",
+                  "other order, of the size", "energy of shapes: as they are, at the template, at the end",
+                  "energy of motions before, after", "iterations", "never rises", "seconds"});
   for (const int copies : evaluation.copies) {
     const Row row = evaluate(std::size_t(copies), evaluation, settings);
     report.say(message(copies, " copies:"));
@@ -139,8 +140,8 @@ void evaluate_statistics(const StatisticsEvaluation& evaluation, const Settings&
     report.figure("seconds", "seconds", row.seconds);
     table += table_line({message(copies), scientific(row.agreement), scientific(row.warps),
                          reordered ? scientific(row.order) : "",
-                         scientific(row.space.energy_unregistered) + ", " + scientific(row.space.energy.front()) + ", " +
-                             scientific(row.space.energy.back()),
+                         scientific(row.space.energy_unregistered) + ", " + scientific(row.space.energy.front()) +
+                             ", " + scientific(row.space.energy.back()),
                          scientific(row.time.energy.front()) + ", " + scientific(row.time.energy.back()),
                          message(row.space.energy.size() - 1, " + ", row.time.energy.size() - 1), falls ? "yes" : "no",
                          fixed(row.seconds, 0)});

@@ -88,8 +88,9 @@ Body body_of_archive(const Archive& archive) {
   sequence.duration = archive.number("body.duration");
   sequence.name = archive.text("body.name");
   const TriangleMesh sphere{archive.get<Eigen::MatrixXd>("body.sphere", 3, n), sequence.faces};
-  AnyAnimatedSurface surface =
-      archive.contains("surface") ? surface_from(archive) : AnyAnimatedSurface(SampledSurface(sequence, sphere.vertices));
+  AnyAnimatedSurface surface = archive.contains("surface")
+                                   ? surface_from(archive)
+                                   : AnyAnimatedSurface(SampledSurface(sequence, sphere.vertices));
   const Mat3X trajectory = archive.get<Eigen::MatrixXd>("body.trajectory", 3, frames.cols());
   return {{std::move(sequence), trajectory, archive.number("body.scale")},
           sphere,

@@ -388,11 +388,11 @@ int main(int argc, char** argv) {
   correspondence_command->add_option("--markdown", correspondence.markdown, "write the table to this file");
 
   StatisticsEvaluation statistics;
-  CLI::App* statistics_command =
-      command_of(evaluate_command, "statistics", "means of copies of one motion that are warped, turned and noisy", [&] {
-        check_output(statistics.markdown.string(), "");
-        evaluate_statistics(statistics, settings, report);
-      });
+  CLI::App* statistics_command = command_of(evaluate_command, "statistics",
+                                            "means of copies of one motion that are warped, turned and noisy", [&] {
+                                              check_output(statistics.markdown.string(), "");
+                                              evaluate_statistics(statistics, settings, report);
+                                            });
   statistics_command->add_option("--copies", statistics.copies, "numbers of copies, each of which is one mean")
       ->delimiter(',')
       ->check(CLI::Range(1, 1000));
@@ -470,9 +470,7 @@ int main(int argc, char** argv) {
     check_output(fitted, ".dsns");
     mean(Group(sources, settings, report, 2), {out, overview, before, own, fitted}, settings, report);
   });
-  mean_command->add_option("FILES", sources, "two animations or more")
-      ->required()
-      ->expected(2, 1000);
+  mean_command->add_option("FILES", sources, "two animations or more")->required()->expected(2, 1000);
   mean_command->add_option("-o,--output", out, "write the mean to this GLB");
   mean_command->add_option("--overview", overview, "write all, registered, with the mean last, to this GLB");
   mean_command->add_option("--before", before,
@@ -483,9 +481,7 @@ int main(int argc, char** argv) {
 
   Study study;
   const auto add_study = [&](CLI::App* sub) {
-    sub->add_option("FILES", sources, "three animations or more")
-        ->required()
-        ->expected(3, 1000);
+    sub->add_option("FILES", sources, "three animations or more")->required()->expected(3, 1000);
     add_choice(sub, "--part", study.part,
                {{"all", dsns::MotionPart::all},
                 {"start", dsns::MotionPart::start},
@@ -523,7 +519,8 @@ int main(int argc, char** argv) {
   });
   distances_command->add_option("--labels", study.labels, "one word for each animation named, with commas between")
       ->delimiter(',');
-  distances_command->add_option("--covariate", study.covariate, "one number for each animation named, with commas between")
+  distances_command
+      ->add_option("--covariate", study.covariate, "one number for each animation named, with commas between")
       ->delimiter(',');
   add_csv(distances_command);
   add_study(distances_command);

@@ -113,7 +113,8 @@ BodiesMean mean_of_bodies(const Group& group, const Settings& settings, Report& 
   Body body = group.body(chosen.member);
   const MovingMeanOptions options = mean_options(body, settings);
   const std::string what = message("1|", int(settings.search), "|", settings.frames);
-  MovingMean moving = mean_of_group(load, chosen, body.sphere, options, group.store(chosen.member, what), std::ref(line));
+  MovingMean moving =
+      mean_of_group(load, chosen, body.sphere, options, group.store(chosen.member, what), std::ref(line));
   BodiesMean mean{std::move(moving), std::move(body), {}};
   const MovingMean& m = mean.moving;
   const std::string section = report.section();
@@ -165,11 +166,11 @@ void mean(const Group& group, const MeanOutputs& out, const Settings& settings, 
     // On the first one's triangles, as points of its source: a body that was kept does not know its source's mesh any more.
     const Body first = read_body(group.members().front().source, settings, {}).body;
     const Mat3X places = mean.moving.group.members.front().spatial.gamma.inverse(first.sphere.vertices);
-    write_on_own_mesh(out.own, first,
-                      denormalize(frames_of(AnyAnimatedSurface(mean.moving.surface(settings.frames)), places,
-                                            settings.frames),
-                                  first.sphere.faces, mean.way, mean.scale, mean.duration, "mean"),
-                      settings);
+    write_on_own_mesh(
+        out.own, first,
+        denormalize(frames_of(AnyAnimatedSurface(mean.moving.surface(settings.frames)), places, settings.frames),
+                    first.sphere.faces, mean.way, mean.scale, mean.duration, "mean"),
+        settings);
     report.wrote("own_mesh", out.own);
   }
   if (!out.fitted.empty()) write_fitted(out.fitted, mean, settings, report);
@@ -183,8 +184,7 @@ void mean(const Group& group, const MeanOutputs& out, const Settings& settings, 
   }
   all.add(result, colors);
   all.write(out.overview);
-  report.say(
-      "  Side by side: every body on the mean's triangles and clock, the mean last. Colours correspond.");
+  report.say("  Side by side: every body on the mean's triangles and clock, the mean last. Colours correspond.");
   report.wrote("overview", out.overview);
 }
 

@@ -17,7 +17,8 @@ void say_units(Report& report);
 /// A body as it is, on its own triangles, with its own motion.
 MeshSequence as_represented(const Body& body, int frames);
 /// A body on another's sphere mesh and clock, with size and motion.
-MeshSequence registered(const Body& body, const MovingRegistration& registration, const TriangleMesh& sphere, int frames);
+MeshSequence registered(const Body& body, const MovingRegistration& registration, const TriangleMesh& sphere,
+                        int frames);
 
 /// The mean of a group with what the sizes and the ways of the roots are in the mean.
 struct BodiesMean {

@@ -1,5 +1,6 @@
 // modes, sample, distances: what is said of a group of animations.
 #include "commands.hpp"
+#include "plot.hpp"
 #include "registration.hpp"
 #include "scene.hpp"
 #include "tables.hpp"
@@ -8,6 +9,7 @@
 #include <dsns/stats/groups.hpp>
 
 #include <map>
+#include <optional>
 #include <sstream>
 
 namespace dsns::program {
@@ -59,14 +61,31 @@ std::vector<T> of_members(const std::vector<T>& values, const Group& group, cons
   return out;
 }
 
+/// Curves of a model's quality by its number of modes, as a script of gnuplot.
+std::string quality_script(const ModelQuality& quality) {
+  const auto block = [](const char* name, const Eigen::VectorXd& values) {
+    std::string text = message("$", name, " << END\n");
+    for (Index k = 0; k < values.size(); ++k) text += message(k + 1, " ", values[k], "\n");
+    return text + "END\n";
+  };
+  return block("compactness", quality.compactness) + block("generalisation", quality.generalisation) +
+         block("specificity", quality.specificity) +
+         "set terminal svg size 900,340 background 'white'\nset output 'quality.svg'\nset multiplot layout 1,2\n"
+         "set grid\nset xlabel 'modes'\nset xtics 1\nset style data linespoints\nset yrange [0:*]\n"
+         "set key right bottom\nset ylabel 'share of the variance'\nplot $compactness pt 7 title 'compactness'\n"
+         "set key right top\nset ylabel 'distance'\nplot $generalisation pt 7 title 'generalisation: a member to the "
+         "model of the others', $specificity pt 5 title 'specificity: a sample to the nearest member'\n";
+}
+
 }  // namespace
 
 void modes(const Group& group, const Study& study, const Settings& settings, Report& report) {
   const BodiesMean mean = mean_of_bodies(group, settings, report);
   const PrincipalModes modes = modes_of(mean, study, report);
   const LinearModel& model = modes.model();
+  std::optional<ModelQuality> assessed;
   if (group.size() >= 3) {
-    const ModelQuality quality = model_quality(modes.features().members(), 200, settings.seed);
+    const ModelQuality& quality = assessed.emplace(model_quality(modes.features().members(), 200, settings.seed));
     report.figure("compactness", "share of the variance in the first modes", numbers(quality.compactness));
     report.figure("generalisation", "distance of each to the model of the others", numbers(quality.generalisation));
     report.figure("specificity", "distance of random members to the nearest", numbers(quality.specificity));
@@ -95,13 +114,21 @@ void modes(const Group& group, const Study& study, const Settings& settings, Rep
   for (Index k = 0; k < std::min<Index>(study.modes, model.modes()); ++k) {
     Scene scene;
     for (const double deviations : {-3.0, -1.5, 0.0, 1.5, 3.0})
-      scene.add(mean.animation(points_of(modes.at(modes.deviations(k, deviations)), study.part), message("mode ", k + 1)),
-                colors);
+      scene.add(
+          mean.animation(points_of(modes.at(modes.deviations(k, deviations)), study.part), message("mode ", k + 1)),
+          colors);
     const fs::path path = study.out / message("mode_", k + 1, ".glb");
     scene.write(path);
     report.wrote(message("mode_", k + 1), path);
   }
   report.say("  Side by side: -3, -1.5, 0, 1.5 and 3 standard deviations from the mean.");
+  if (!assessed) return;
+  const fs::path script = study.out / "quality.gnuplot";
+  write_file_atomically(script, quality_script(*assessed));
+  if (draw(script))
+    report.wrote("quality", study.out / "quality.svg");
+  else
+    report.say("  No picture of the quality: gnuplot is missing, or failed on " + script.string());
 }
 
 void sample_bodies(const Group& group, const Study& study, const fs::path& out, const Settings& settings,
@@ -117,8 +144,7 @@ void sample_bodies(const Group& group, const Study& study, const fs::path& out, 
     const RegisteredMotion motion = modes.at(scores.col(i));
     slopes.push_back(motion.warp.min_slope());
     folds.push_back(turned_over(mean, motion, settings.frames));
-    if (!out.empty())
-      scene.add(mean.animation(points_of(motion, study.part), message("sample ", i + 1)), colors);
+    if (!out.empty()) scene.add(mean.animation(points_of(motion, study.part), message("sample ", i + 1)), colors);
   }
   report.say("Samples:");
   report.figure("sample_min_slope", "smallest slope of the time warp of each", slopes);

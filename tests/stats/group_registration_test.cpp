@@ -31,8 +31,7 @@ std::vector<AnyAnimatedSurface> copies(std::size_t n) {
   std::vector<AnyAnimatedSurface> out;
   for (std::size_t i = 0; i < n; ++i) {
     const Mat3 turn = rotation_exp(0.05 * Vec3d(double(i), 1, -double(i)));
-    out.emplace_back(
-        RegisteredSurface(original(), turn, random_diffeomorphism(i + 1, 2, 3 * pi / 180), clock_of(i)));
+    out.emplace_back(RegisteredSurface(original(), turn, random_diffeomorphism(i + 1, 2, 3 * pi / 180), clock_of(i)));
   }
   return out;
 }
@@ -57,7 +56,8 @@ MovingMeanOptions fine() {
 
 }  // namespace
 
-TEST_CASE("copies of a motion, warped in space and time, have it as their mean, in whatever order they come", "[stats]") {
+TEST_CASE("copies of a motion, warped in space and time, have it as their mean, in whatever order they come",
+          "[stats]") {
   const auto surfaces = copies(3);
   const MovingMeanOptions options = fine();
   const TriangleMesh sphere = icosphere(2);
@@ -112,8 +112,9 @@ TEST_CASE("copies of a motion, warped in space and time, have it as their mean, 
   CHECK(writes == 0);
   for (std::size_t i = 0; i < 3; ++i) {
     CHECK((again.members[i].spatial.rotation - m.group.members[i].spatial.rotation).norm() == 0);
-    CHECK((again.members[i].spatial.gamma(sphere.vertices) - m.group.members[i].spatial.gamma(sphere.vertices)).norm() ==
-          0);
+    CHECK(
+        (again.members[i].spatial.gamma(sphere.vertices) - m.group.members[i].spatial.gamma(sphere.vertices)).norm() ==
+        0);
     CHECK(distance(again.members[i].temporal.warp, m.group.members[i].temporal.warp) == 0);
   }
 }

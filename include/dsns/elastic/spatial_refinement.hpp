@@ -57,7 +57,8 @@ class RefinementProblem {
   /// O g(P f2(y)), one a time.
   std::vector<Eigen::MatrixXd> fields(const Mat3X& y, const Mat3& O) const {
     std::vector<Eigen::MatrixXd> out;
-    for (const HarmonicSurface& f : projected(second_->positions(y))) out.push_back(rotate_blocks(O, field(at_nodes(f))));
+    for (const HarmonicSurface& f : projected(second_->positions(y)))
+      out.push_back(rotate_blocks(O, field(at_nodes(f))));
     return out;
   }
 

@@ -60,7 +60,7 @@ inline CentredMaps centred(std::vector<SphereDiffeomorphism> maps, const GaugeOp
   out.before = out.after = size(v);
   for (int step = 0; step < options.steps && out.after > options.tolerance; ++step) {
     SphereDiffeomorphism back;
-    back.append({v.degree, -v.a, -v.b});
+    back.append(detail::safe_increment({v.degree, -v.a, -v.b}, {}));
     std::vector<SphereDiffeomorphism> next;
     for (const SphereDiffeomorphism& gamma : maps) next.push_back(compose(gamma, back));
     std::swap(maps, next);

@@ -21,7 +21,7 @@ concept LoadsSurfaces = AnimatedSurface<std::remove_cvref_t<std::invoke_result_t
 struct GroupOptions {
   RegistrationOptions registration;  ///< to the template; spatial.threads are the members registered at a time
   int iterations = 10;
-  double tolerance = 0.01;  ///< converged when an iteration lowers the energy by less than this share of it, and
+  double tolerance = 0.02;  ///< converged when an iteration lowers the energy by less than this share of it, and
   double least = 1e-6;      ///< this share of what it was unregistered
   GaugeOptions gauge;
 };
@@ -151,8 +151,8 @@ class SpatialGroup {
     return spatial;
   }
   template <class Use>
-  auto with_problem(std::size_t i, const MovingRegistration& member, const Fields& targets, const SpatialOptions& spatial,
-                    const Use& use) const {
+  auto with_problem(std::size_t i, const MovingRegistration& member, const Fields& targets,
+                    const SpatialOptions& spatial, const Use& use) const {
     const auto& surface = (*load_)(i);
     const auto clock = [&](double t) { return member.temporal.warp(t); };
     const MovingStack<std::remove_cvref_t<decltype(surface)>, decltype(clock)> stack{
@@ -224,7 +224,8 @@ inline bool continue_group(GroupRegistration& group, const ResultStore& store) {
   if (!last) return false;
   for (std::size_t i = 0; i < group.members.size(); ++i) {
     const auto kept = store.find(message(name, ".", i));
-    require<FileError>(kept.has_value(), last->name(), ": member ", i, " of that iteration is missing, remove the file");
+    require<FileError>(kept.has_value(), last->name(), ": member ", i,
+                       " of that iteration is missing, remove the file");
     group.members[i] = registration_from(*kept);
   }
   const auto& energy = last->get<Eigen::MatrixXd>("energy");
@@ -292,8 +293,7 @@ GroupRegistration register_group(const Load& load, const GroupTemplate& chosen, 
     const double gauge = detail::centre_in_space(next, chosen, options.gauge);
     auto next_mean = space.mean_of(next);
     const double gain = mean.energy - next_mean.energy;
-    summary.converged =
-        gain <= options.tolerance * mean.energy + options.least * summary.energy_unregistered;
+    summary.converged = gain <= options.tolerance * mean.energy + options.least * summary.energy_unregistered;
     if (gain > 0) {
       group.members = std::move(next);
       mean = std::move(next_mean);

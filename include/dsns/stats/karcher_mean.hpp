@@ -17,7 +17,7 @@ struct KarcherOptions {
   KarcherCentre centre = KarcherCentre::mean;
   std::vector<double> weights = {};  ///< one a curve, not negative; empty: 1 each
   int iterations = 30;
-  double tolerance = 1e-4;  ///< converged when an iteration lowers the energy by no more than this share of the first
+  double tolerance = 1e-3;  ///< converged when an iteration lowers the energy by no more than this share of the first
   TemporalOptions temporal;
   int threads = 1;
 };

@@ -118,7 +118,7 @@ class FunctionalPca {
   Eigen::VectorXd project_vector(const Eigen::VectorXd& x) const { return modes_.transpose() * x.cwiseProduct(root_); }
 
   Eigen::VectorXd weights_, root_, mean_, variances_;
-  Eigen::MatrixXd modes_;  // scaled by the square roots of the weights: orthonormal columns
+  Eigen::MatrixXd modes_;           // scaled by the square roots of the weights: orthonormal columns
   Eigen::MatrixXd of_coordinates_;  // of a basis
   Eigen::VectorXd centre_;
   double residual_ = 0, total_variance_ = 0;

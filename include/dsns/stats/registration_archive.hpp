@@ -26,15 +26,15 @@ inline void store_registration(Archive& archive, const MovingRegistration& r) {
   const TemporalSummary& t = r.temporal.summary;
   store_sphere_map(archive, r.spatial.gamma);
   archive.set("registration.rotation", Eigen::MatrixXd(r.spatial.rotation));
-  archive.set("registration.spatial", Eigen::MatrixXd(Eigen::Vector4d(s.energy_before, s.energy_after, s.norm,
-                                                                      s.min_jacobian)));
+  archive.set("registration.spatial",
+              Eigen::MatrixXd(Eigen::Vector4d(s.energy_before, s.energy_after, s.norm, s.min_jacobian)));
   archive.set("registration.spatial_steps", s.steps);
   archive.set("registration.spatial_stop", s.stop);
   Eigen::MatrixXd warp(r.temporal.warp.values().size(), 2);
   warp << r.temporal.warp.values(), r.temporal.warp.slopes();
   archive.set("registration.warp", std::move(warp));
-  archive.set("registration.temporal", Eigen::MatrixXd(Eigen::Vector4d(t.energy_before, t.energy_after, t.norm,
-                                                                       t.min_slope)));
+  archive.set("registration.temporal",
+              Eigen::MatrixXd(Eigen::Vector4d(t.energy_before, t.energy_after, t.norm, t.min_slope)));
   archive.set("registration.temporal_steps", t.steps);
   archive.set("registration.temporal_stop", t.stop);
   archive.set("registration.advice", t.advice);
@@ -53,7 +53,8 @@ inline MovingRegistration registration_from(const Archive& archive) {
   s = {spatial(0), spatial(1), spatial(2), spatial(3), 0, {}, archive.text("registration.spatial_stop")};
   s.steps = static_cast<int>(archive.integer("registration.spatial_steps", 0, 100000));
   const auto& warp = archive.get<Eigen::MatrixXd>("registration.warp");
-  require<FileError>(warp.cols() == 2, archive.name(), ": the warp of time has ", warp.cols(), " columns, wanted are 2");
+  require<FileError>(warp.cols() == 2, archive.name(), ": the warp of time has ", warp.cols(),
+                     " columns, wanted are 2");
   try {
     r.temporal.warp = TimeWarp(warp.col(0), warp.col(1));
   } catch (const InvalidArgument& misfit) {

@@ -11,8 +11,9 @@
 namespace dsns {
 
 struct SnapshotBasisOptions {
-  double residual = 1e-10;  ///< mean squared coordinate error of the snapshots of a member, at most, squared length unit
-  Index most = 600;         ///< vectors: beyond that the least important half is dropped, and counted in residual()
+  double residual =
+      1e-10;         ///< mean squared coordinate error of the snapshots of a member, at most, squared length unit
+  Index most = 600;  ///< vectors: beyond that the least important half is dropped, and counted in residual()
 };
 
 /// Members are sequences of snapshots, 3 x n each, and of vectors such as velocities, which do not extend the basis.
@@ -57,9 +58,7 @@ class SnapshotBasis {
     return sum;
   }
   /// Mean squared coordinate error by what was dropped.
-  double residual() const {
-    return dropped_ / std::max(1.0, double(origin_.size()) * double(count_));
-  }
+  double residual() const { return dropped_ / std::max(1.0, double(origin_.size()) * double(count_)); }
 
  private:
   Eigen::MatrixXd columns(const std::vector<Mat3X>& fields) const {
