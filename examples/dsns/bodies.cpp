@@ -97,22 +97,28 @@ RepairResult repaired_surface(const MeshSequence& sequence, const Settings& sett
   return settings.join ? repair_joined(sequence, settings.repair) : repair(sequence, settings.repair);
 }
 
-Body load_body(const std::string& name, const Settings& settings, Report& report, const Progress& progress) {
+LoadedBody read_body(const std::string& name, const Settings& settings, const Progress& progress) {
   const Source source = read_source(name, settings);
   const RepairResult repaired = repaired_surface(source.sequence, settings);
   NormalizedSequence normalized = normalize(repaired.sequence);
   ParameterizationResult map = spherical_parameterization(normalized.sequence, {}, progress);
-  report.say(name + ":");
-  for (const auto& note : source.notes) report.say("  " + note);
-  for (const auto& action : repaired.actions) report.say("  " + action);
-  report.say(message("  mapped to the sphere: ", normalized.sequence.vertex_count(), " vertices, ",
-                     map.certificate.flips, " flipped triangles, smallest area ratio ",
-                     map.certificate.min_area_ratio));
+  std::vector<std::string> done = source.notes;
+  done.insert(done.end(), repaired.actions.begin(), repaired.actions.end());
+  done.push_back(message("mapped to the sphere: ", normalized.sequence.vertex_count(), " vertices, ",
+                         map.certificate.flips, " flipped triangles, smallest area ratio ",
+                         map.certificate.min_area_ratio));
   const TriangleMesh sphere{map.sphere, normalized.sequence.faces};
   AnyAnimatedSurface surface(SampledSurface(normalized.sequence, map.sphere));
-  return {std::move(normalized), sphere,      map.certificate,
-          std::move(surface),    source.file, OwnMesh(source.sequence, repaired),
-          source.sequence.faces};
+  return {{std::move(normalized), sphere, map.certificate, std::move(surface), source.file,
+           OwnMesh(source.sequence, repaired), source.sequence.faces},
+          std::move(done)};
+}
+
+Body load_body(const std::string& name, const Settings& settings, Report& report, const Progress& progress) {
+  LoadedBody loaded = read_body(name, settings, progress);
+  report.say(name + ":");
+  for (const auto& sentence : loaded.done) report.say("  " + sentence);
+  return std::move(loaded.body);
 }
 
 void write_on_own_mesh(const std::filesystem::path& out, const Body& body, const MeshSequence& result,

@@ -42,6 +42,7 @@ struct Settings {
   std::string checkpoint;   ///< file in which a fit keeps what it needs to go on; empty: none
   bool resume = false;      ///< go on from it, where it is there
   bool keep_going = false;  ///< leave out animations that cannot be used
+  std::string work;         ///< folder in which what is finished of a group is kept, to go on from; empty: none
 };
 
 /// A file's animation before anything is done to it.
@@ -70,7 +71,14 @@ struct Body {
   Faces own_faces;
 };
 
-/// Reads, repairs and maps; the surface is the sampled mesh. Says in the report what was done.
+struct LoadedBody {
+  Body body;
+  std::vector<std::string> done;  ///< what was done to it, a sentence each
+};
+
+/// Reads, repairs and maps; the surface is the sampled mesh.
+LoadedBody read_body(const std::string& name, const Settings& settings, const Progress& progress);
+/// The same, and says in the report what was done.
 Body load_body(const std::string& name, const Settings& settings, Report& report, const Progress& progress);
 
 /// Writes a sequence on the body's triangles as one on the mesh of its file: a GLB with its materials, a .npy, or a folder of

@@ -1,6 +1,7 @@
 #pragma once
 /// The subcommands. Each prints its figures in a report; errors come as exceptions of the library.
 #include "bodies.hpp"
+#include "group.hpp"
 
 #include <dsns/stats/principal_modes.hpp>
 
@@ -38,24 +39,30 @@ void geodesic(const Body& first, const Body& second, const GeodesicOptions& opti
 /// stand alike; `own` is the second's.
 void transfer(const Body& first, const Body& second, const std::filesystem::path& out, const std::filesystem::path& own,
               const Settings& settings, Report& report);
-void mean(const std::vector<Body>& bodies, const std::filesystem::path& out, const std::filesystem::path& overview,
-          const std::filesystem::path& own, const Settings& settings, Report& report);
+/// Where the results of a mean go; empty: nowhere.
+struct MeanOutputs {
+  std::filesystem::path mean, overview;  ///< alone; with all registered before it
+  std::filesystem::path before;          ///< all as they are, with the mean that they have without registration
+  std::filesystem::path own;             ///< on the first one's own mesh
+  std::filesystem::path fitted;          ///< .dsns: a surface that is a function of point and time, fitted to the mean
+};
+void mean(const Group& group, const MeanOutputs& out, const Settings& settings, Report& report);
 struct Study {
   MotionPart part = MotionPart::all;  ///< of the motions, that is compared
   int modes = 3;                      ///< that are written and sampled
   int samples = 20;
-  std::vector<std::string> labels;  ///< one a file, or none; likewise below
+  std::vector<std::string> labels;  ///< one a file named, those left out among them, or none; likewise below
   std::vector<double> covariate;
   std::filesystem::path out;  ///< folder, or empty; likewise below
   std::filesystem::path csv;
 };
 /// The principal modes of the bodies around their mean, each as an animation of -3 to 3 standard deviations side by side.
-void modes(const std::vector<Body>& bodies, const Study& study, const Settings& settings, Report& report);
-/// Random members of the group.
-void sample_bodies(const std::vector<Body>& bodies, const Study& study, const std::filesystem::path& out,
-                   const Settings& settings, Report& report);
+void modes(const Group& group, const Study& study, const Settings& settings, Report& report);
+/// Random members of the group, and how many of them are valid: no triangle turned over, time that goes forward.
+void sample_bodies(const Group& group, const Study& study, const std::filesystem::path& out, const Settings& settings,
+                   Report& report);
 /// Who is near whom, and what labels and a covariate explain.
-void distances(const std::vector<Body>& bodies, const Study& study, const Settings& settings, Report& report);
+void distances(const Group& group, const Study& study, const Settings& settings, Report& report);
 struct RepresentationEvaluation {
   int frames_trained = 30;    ///< of a second fit, tested on the other frames; 0: none
   std::filesystem::path out;  ///< folder for heat maps of the errors, or empty; likewise below

@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "group.hpp"
 #include "scene.hpp"
 
 #include <dsns/mesh/sphere_mesh.hpp>
@@ -83,7 +84,7 @@ void demo(std::vector<std::string> sources, const std::filesystem::path& folder,
   geodesic(bodies[0], bodies[1], way, settings, report);
   report.say("\nThe mean of all:");
   report.section("mean");
-  mean(bodies, folder / "mean.glb", folder / "overview.glb", {}, settings, report);
+  mean(Group(std::move(bodies)), {folder / "mean.glb", folder / "overview.glb", {}, {}, {}}, settings, report);
 }
 
 }  // namespace dsns::program

@@ -1,5 +1,6 @@
 #pragma once
-/// evaluate spatial and evaluate correspondence: registration against truths that are known; and registration in space alone.
+/// evaluate spatial, correspondence, statistics: registration and means against truths that are known; and registration in space
+/// alone.
 #include "bodies.hpp"
 
 #include <filesystem>
@@ -42,6 +43,17 @@ struct CorrespondenceEvaluation {
 /// Two bodies whose vertices correspond by number, which is not shown: the second is remeshed, its sphere turned and warped.
 void evaluate_correspondence(const std::string& first, const std::string& second, const Settings& settings,
                              const CorrespondenceEvaluation& evaluation, Report& report);
+
+struct StatisticsEvaluation {
+  std::vector<int> copies{2, 6, 20};
+  double degrees = 5;   ///< size of the warps of the spheres, rms
+  double noise = 1e-4;  ///< of every coordinate, of the body's size
+  int level = 5;        ///< of the icosphere on which the copies are sampled
+  int reordered = 6;    ///< the mean is taken again in another order of so many copies, at most
+  std::filesystem::path markdown;
+};
+/// Means of warped, turned, noisy copies of one motion, each on a clock of its own, against that motion.
+void evaluate_statistics(const StatisticsEvaluation& evaluation, const Settings& settings, Report& report);
 
 /// Where `register --spatial-only` begins.
 enum class SpatialBeginning { rotation, correspondence };

@@ -97,6 +97,9 @@ void add_registration(CLI::App* command, Settings& settings) {
 
 void about_groups(CLI::App* command, Settings& settings) {
   command->add_flag("--keep-going", settings.keep_going, "leave out animations that cannot be used");
+  command->add_option("--work", settings.work,
+                      "folder in which bodies and registrations are kept: an interrupted run goes on from there, and "
+                      "bodies are read from it one at a time");
   add_registration(command, settings);
 }
 
@@ -384,6 +387,30 @@ int main(int argc, char** argv) {
              "of the others: upright: the bodies stand alike (same up, same heading); full: they lie at will");
   correspondence_command->add_option("--markdown", correspondence.markdown, "write the table to this file");
 
+  StatisticsEvaluation statistics;
+  CLI::App* statistics_command = command_of(evaluate_command, "statistics",
+                                            "means of copies of one motion that are warped, turned and noisy", [&] {
+                                              check_output(statistics.markdown.string(), "");
+                                              evaluate_statistics(statistics, settings, report);
+                                            });
+  statistics_command->add_option("--copies", statistics.copies, "numbers of copies, each of which is one mean")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1000));
+  statistics_command->add_option("--degrees", statistics.degrees, "size of the warps of the spheres, degrees rms")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 20.0));
+  statistics_command->add_option("--noise", statistics.noise, "of every coordinate, as a share of the body's size")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  statistics_command->add_option("--level", statistics.level, "of the icosphere on which the copies are sampled")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 7));
+  statistics_command
+      ->add_option("--reordered", statistics.reordered, "take the mean again in another order of so many, at most")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1000));
+  statistics_command->add_option("--markdown", statistics.markdown, "write the table to this file");
+
   bool spatial_only = false;
   SpatialBeginning beginning = SpatialBeginning::rotation;
   CLI::App* register_command =
@@ -446,22 +473,24 @@ int main(int argc, char** argv) {
   transfer_command->add_option("--own-mesh", own, "write the result on the second file's own mesh, as register does");
   add_registration(transfer_command, settings);
 
+  std::string before, fitted;
   CLI::App* mean_command = command("mean", "the mean of animations", [&] {
-    mean(load(sources, settings, report, 2), out, overview, own, settings, report);
+    check_output(before, ".glb");
+    check_output(fitted, ".dsns");
+    mean(Group(sources, settings, report, 2), {out, overview, before, own, fitted}, settings, report);
   });
-  mean_command->add_option("FILES", sources, "two animations or more; the first gives the triangles")
-      ->required()
-      ->expected(2, 1000);
+  mean_command->add_option("FILES", sources, "two animations or more")->required()->expected(2, 1000);
   mean_command->add_option("-o,--output", out, "write the mean to this GLB");
   mean_command->add_option("--overview", overview, "write all, registered, with the mean last, to this GLB");
+  mean_command->add_option("--before", before,
+                           "write all as they are, with the mean that they have without registration, to this GLB");
+  mean_command->add_option("--fitted", fitted, "fit a surface to the mean, write it to this .dsns file");
   add_own_mesh(mean_command);
   about_groups(mean_command, settings);
 
   Study study;
   const auto add_study = [&](CLI::App* sub) {
-    sub->add_option("FILES", sources, "three animations or more; the first gives the triangles")
-        ->required()
-        ->expected(3, 1000);
+    sub->add_option("FILES", sources, "three animations or more")->required()->expected(3, 1000);
     add_choice(sub, "--part", study.part,
                {{"all", dsns::MotionPart::all},
                 {"start", dsns::MotionPart::start},
@@ -478,7 +507,7 @@ int main(int argc, char** argv) {
   CLI::App* modes_command = command("modes", "how animations vary around their mean", [&] {
     check_output(study.csv.string(), "");
     study.out = out;
-    modes(load(sources, settings, report, 3), study, settings, report);
+    modes(Group(sources, settings, report, 3), study, settings, report);
   });
   modes_command->add_option("-o,--output", out, "folder for an animation of each mode");
   add_modes(modes_command, "modes that are written");
@@ -486,7 +515,7 @@ int main(int argc, char** argv) {
   add_study(modes_command);
 
   CLI::App* sample_command = command("sample", "random new members of a group of animations", [&] {
-    sample_bodies(load(sources, settings, report, 3), study, out, settings, report);
+    sample_bodies(Group(sources, settings, report, 3), study, out, settings, report);
   });
   sample_command->add_option("-o,--output", out, "write them to this GLB, side by side");
   sample_command->add_option("--count", study.samples, "how many")->capture_default_str()->check(CLI::Range(1, 1000));
@@ -495,11 +524,12 @@ int main(int argc, char** argv) {
 
   CLI::App* distances_command = command("distances", "who is near whom, and what labels or a number explain", [&] {
     check_output(study.csv.string(), "");
-    distances(load(sources, settings, report, 3), study, settings, report);
+    distances(Group(sources, settings, report, 3), study, settings, report);
   });
-  distances_command->add_option("--labels", study.labels, "one word for each animation, with commas between")
+  distances_command->add_option("--labels", study.labels, "one word for each animation named, with commas between")
       ->delimiter(',');
-  distances_command->add_option("--covariate", study.covariate, "one number for each animation, with commas between")
+  distances_command
+      ->add_option("--covariate", study.covariate, "one number for each animation named, with commas between")
       ->delimiter(',');
   add_csv(distances_command);
   add_study(distances_command);

@@ -1,16 +1,15 @@
 #pragma once
 /// Bodies brought into correspondence with one another, as the subcommands do it.
-#include "bodies.hpp"
+#include "group.hpp"
 
 #include <dsns/stats/moving_mean.hpp>
 
 namespace dsns::program {
 
+/// With a mask where holes of the first body are closed.
 RegistrationOptions registration_options(const Body& first, const Settings& settings);
-
 MovingRegistration register_bodies(const Body& first, const Body& second, const Settings& settings,
                                    const Progress& progress);
-
 /// What the registration did, and where its figures say that the result is doubtful.
 void report_registration(const MovingRegistration& registration, Report& report);
 void say_not_written(Report& report, const std::string& option = "-o FILE.glb");
@@ -28,17 +27,23 @@ Mat3X registered_trajectory(const Body& body, const MovingRegistration& registra
 MeshSequence registered(const Body& body, const MovingRegistration& registration, const TriangleMesh& sphere,
                         int frames);
 
-/// The mean of bodies with what the sizes and the ways of their roots are in the mean.
+/// The mean of a group with what the sizes and the ways of the roots are in the mean.
 struct BodiesMean {
   MovingMean moving;
-  Mat3X way;  ///< in units of the scale, one column a frame
+  Body chosen;  ///< the member whose triangles the mean has
+  Mat3X way;    ///< in units of the scale, one column a frame
   double scale = 0, duration = 0;
 
+  const Faces& faces() const { return moving.sphere.faces; }
+  /// A colour for each vertex: where it lies on the chosen member.
+  Mat3X colors() const;
   /// Points of a curve in the mean's components, as an animation of the mean's size and way.
-  MeshSequence animation(const Eigen::MatrixXd& points, const Faces& faces, const std::string& name) const;
+  MeshSequence animation(const Eigen::MatrixXd& points, const std::string& name) const;
+  /// The mean's own.
+  MeshSequence animation(const std::string& name) const;
 };
 
 /// Says in the report what the registrations and the mean are.
-BodiesMean mean_of_bodies(const std::vector<Body>& bodies, const Settings& settings, Report& report);
+BodiesMean mean_of_bodies(const Group& group, const Settings& settings, Report& report);
 
 }  // namespace dsns::program

@@ -318,6 +318,21 @@ TEST_CASE("a group has modes, new members and distances; a broken file is left o
   CHECK(kept.err.find("broken.glb") != std::string::npos);
   CHECK(std::filesystem::exists(file("mean.glb")));
   CHECK(count(read(file("r.json")), "\"left_out\"") == 1);
+
+  // Labels are of the files named, whether they can be used or not; what a work folder keeps is found again.
+  const std::string labelled = "distances " + quoted(file("broken.glb")) + files + quick +
+                               " --part start --labels none,thin,thin,thick,thick --keep-going --work " +
+                               quoted(file("work")) + " --csv ";
+  const Run fresh = run(folder.path(), labelled + quoted(file("d1.csv")));
+  INFO(fresh.out << fresh.err);
+  REQUIRE(fresh.status == 0);
+  CHECK(number_after(read(file("r.json")), "accuracy") == 1);
+  CHECK(read(file("d1.csv")) == read(file("d.csv")));
+  const Run continued = run(folder.path(), labelled + quoted(file("d2.csv")));
+  REQUIRE(continued.status == 0);
+  CHECK(count(fresh.out, "found in") == 0);
+  CHECK(count(continued.out, "found in") == 4);
+  CHECK(read(file("d2.csv")) == read(file("d1.csv")));
 }
 
 TEST_CASE("a fit ends at its target error, which it names", "[program]") {

@@ -3,6 +3,7 @@
 #include <dsns/mesh/sphere_mesh.hpp>
 #include <dsns/stats/moving_mean.hpp>
 #include <dsns/surface/analytic.hpp>
+#include <dsns/surface/any_surface.hpp>
 
 namespace moving_mean_test {
 
@@ -87,7 +88,8 @@ TEST_CASE("law: the ends of a geodesic are the moving bodies, to what the compon
 }
 
 TEST_CASE("the mean of two sizes of a body has the size between", "[stats]") {
-  const std::vector<LimbedBody> bodies{some_body(0.9, 0.3), some_body(1.1, -0.3)};
+  const std::vector<AnyAnimatedSurface> bodies{AnyAnimatedSurface(some_body(0.9, 0.3)),
+                                               AnyAnimatedSurface(some_body(1.1, -0.3))};
   MovingMeanOptions options;
   options.registration = quick();
   options.karcher.temporal = options.registration.temporal;
@@ -120,8 +122,11 @@ TEST_CASE("samples, components and curves fit together", "[stats]") {
 }
 
 TEST_CASE("a mean of nothing is refused", "[stats]") {
-  CHECK_THROWS_AS(mean_of_moving(std::vector<LimbedBody>{}, icosphere(0)), InvalidArgument);
-  CHECK_THROWS_AS(mean_of_moving(std::vector<LimbedBody>(1), icosphere(2)).frames(1), InvalidArgument);
+  CHECK_THROWS_AS(mean_of_moving(std::vector<AnyAnimatedSurface>{}, icosphere(0)), InvalidArgument);
+  MovingMeanOptions options;
+  options.registration = quick();
+  CHECK_THROWS_AS(mean_of_moving(std::vector{AnyAnimatedSurface(some_body(1, 0))}, icosphere(2), options).frames(1),
+                  InvalidArgument);
 }
 
 }  // namespace moving_mean_test

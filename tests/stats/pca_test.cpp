@@ -48,6 +48,47 @@ TEST_CASE("the residual is that of the reconstructions", "[stats]") {
   CHECK(pca.residual() == Approx(sum / (3 * 50 * 20)).epsilon(1e-8));
 }
 
+TEST_CASE("components of a basis that grew member by member are those of all snapshots", "[stats]") {
+  const auto x = snapshots(50, 20), y = snapshots(50, 9);
+  const Eigen::VectorXd w = Eigen::VectorXd::LinSpaced(50, 0.5, 2);
+  std::vector<Mat3X> others, all = x;
+  for (const auto& s : y) others.push_back(1.3 * s + Mat3X::Constant(3, 50, 0.1 * s(0, 0)));
+  all.insert(all.end(), others.begin(), others.end());
+  SnapshotBasis basis({1e-16});
+  basis.add(x, {x[1] - x[0]});
+  basis.add(others);
+  const FunctionalPca one(all, w, {1e-14, 80}), two(basis, w, {1e-14, 80});
+  REQUIRE(two.modes() == one.modes());
+  CHECK((two.variances() - one.variances()).norm() < 1e-8 * one.variances().norm());
+  CHECK(two.total_variance() == Approx(one.total_variance()));
+  for (const auto& s : all) CHECK((two.reconstruct(two.project(s)) - s).norm() < 1e-6);
+  CHECK((two.project_coordinates(basis.coordinates(1)).col(2) - two.project(others[2])).norm() < 1e-8);
+  CHECK((two.project_velocity_coordinates(basis.vector_coordinates(0)).col(0) - two.project_velocity(x[1] - x[0]))
+            .norm() < 1e-8);
+}
+
+TEST_CASE("a basis that may hold few vectors keeps the important ones and counts what it drops", "[stats]") {
+  SnapshotBasis basis({1e-16, 4});
+  std::srand(5);
+  std::vector<Mat3X> all;
+  const Mat3X strong = Mat3X::Random(3, 30);
+  for (int member = 0; member < 3; ++member) {
+    std::vector<Mat3X> x;
+    for (int k = 0; k < 3; ++k) x.push_back((1.0 + k + member) * strong + 0.01 * Mat3X::Random(3, 30));
+    basis.add(x);
+    all.insert(all.end(), x.begin(), x.end());
+  }
+  CHECK(basis.vectors().cols() <= 4);
+  double missed = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Eigen::VectorXd back = basis.origin() + basis.vectors() * basis.coordinates(i / 3).col(Index(i % 3));
+    missed += (back - all[i].reshaped()).squaredNorm() / double(all[i].size()) / double(all.size());
+  }
+  CHECK(basis.residual() == Approx(missed).epsilon(1e-6));
+  CHECK(missed < 1e-4);
+  CHECK(missed > 1e-6);
+}
+
 TEST_CASE("snapshots that do not move have one idle mode", "[stats]") {
   const std::vector<Mat3X> x(4, Mat3X::Ones(3, 10));
   const FunctionalPca pca(x, Eigen::VectorXd::Ones(10));

@@ -29,6 +29,17 @@ class RefinementProblem {
  public:
   template <SurfaceStack First>
   RefinementProblem(const First& first, const Second& second, const SpatialLevel& level, const SpatialOptions& options)
+      : RefinementProblem({}, 1, second, level, options) {
+    const std::vector<HarmonicSurface> surfaces = projected(first.positions(nodes_.points));
+    require(!surfaces.empty(), "register_spatially: no surfaces, give at least one of both");
+    double area = 0;
+    for (const HarmonicSurface& f : surfaces) area += area_densities(at_nodes(f)).dot(q_.weights);
+    position_weight_ /= std::sqrt(area / double(surfaces.size()));
+    for (const HarmonicSurface& f : surfaces) targets_.push_back(field(at_nodes(f)));
+  }
+  /// Against fields at the nodes of quadrature(), as fields() gives them, one a time. `area` balances positions against the SRNF.
+  RefinementProblem(std::vector<Eigen::MatrixXd> targets, double area, const Second& second, const SpatialLevel& level,
+                    const SpatialOptions& options)
       : second_(&second),
         options_(&options),
         degree_(level.surface_degree),
@@ -36,17 +47,20 @@ class RefinementProblem {
         nodes_(projection_nodes(degree_)),
         q_(masked(sphere_quadrature(options.latitudes), options)),
         basis_(harmonic_tangents<RowMajor>(charts_at(q_.points), degree_)),
-        projection_(harmonics(nodes_.points, degree_).transpose() * nodes_.weights.asDiagonal()) {
-    const std::vector<HarmonicSurface> surfaces = projected(first.positions(nodes_.points));
-    require(!surfaces.empty(), "register_spatially: no surfaces, give at least one of both");
-    double area = 0;
-    for (const HarmonicSurface& f : surfaces) area += area_densities(at_nodes(f)).dot(q_.weights);
-    srnf_weight_ = std::sqrt(1 - level.position_weight);
-    position_weight_ = std::sqrt(level.position_weight) * 3 / std::sqrt(area / double(surfaces.size()));
-    for (const HarmonicSurface& f : surfaces) targets_.push_back(field(at_nodes(f)));
-  }
+        projection_(harmonics(nodes_.points, degree_).transpose() * nodes_.weights.asDiagonal()),
+        targets_(std::move(targets)),
+        srnf_weight_(std::sqrt(1 - level.position_weight)),
+        position_weight_(std::sqrt(level.position_weight) * 3 / std::sqrt(area)) {}
 
   const Mat3X& points() const { return nodes_.points; }
+  const SphereQuadrature& quadrature() const { return q_; }
+  /// O g(P f2(y)), one a time.
+  std::vector<Eigen::MatrixXd> fields(const Mat3X& y, const Mat3& O) const {
+    std::vector<Eigen::MatrixXd> out;
+    for (const HarmonicSurface& f : projected(second_->positions(y)))
+      out.push_back(rotate_blocks(O, field(at_nodes(f))));
+    return out;
+  }
 
   RefinementState at(Mat3X y, Eigen::VectorXd J, const Mat3& O) const {
     RefinementState p{std::move(y), std::move(J), O, {}, 0};

@@ -17,7 +17,7 @@ struct KarcherOptions {
   KarcherCentre centre = KarcherCentre::mean;
   std::vector<double> weights = {};  ///< one a curve, not negative; empty: 1 each
   int iterations = 30;
-  double tolerance = 1e-4;  ///< converged when an iteration lowers the energy by less than this share of it
+  double tolerance = 1e-3;  ///< converged when an iteration lowers the energy by no more than this share of the first
   TemporalOptions temporal;
   int threads = 1;
 };
@@ -133,7 +133,7 @@ inline KarcherMean karcher_mean(const std::vector<Curve>& curves, KarcherOptions
       result.warps = std::move(warps);
     }
     result.summary.energy.push_back(aligned.energy);
-    result.summary.converged = gain <= options.tolerance * aligned.energy;
+    result.summary.converged = gain <= options.tolerance * result.summary.energy.front();
     target = aligned.mean;
   }
   result.start = aligned.start;

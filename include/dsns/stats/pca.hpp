@@ -1,9 +1,8 @@
 #pragma once
 /// Principal components of sampled surfaces: one orthonormal basis for all that are compared.
-#include <dsns/core/errors.hpp>
-#include <dsns/core/types.hpp>
+#include <dsns/stats/snapshot_basis.hpp>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 #include <vector>
 
 namespace dsns {
@@ -43,6 +42,7 @@ class FunctionalPca {
     }
     count = std::max<Index>(count, 1);
     residual_ = std::max(left, 0.0) / coordinates;
+    total_variance_ = X.squaredNorm() / double(m);
     variances_ = solver.eigenvalues().tail(count).reverse().cwiseMax(0) / double(m);
     modes_ = X * solver.eigenvectors().rightCols(count).rowwise().reverse();
     for (Index k = 0; k < count; ++k) {
@@ -51,16 +51,62 @@ class FunctionalPca {
     }
   }
 
+  /// Of the snapshots that a basis holds; further vectors need its coordinates alone, see project_coordinates().
+  /// accuracy modes, variances and reconstructions as from the snapshots themselves, to what the basis leaves [stats/pca_test]
+  FunctionalPca(const SnapshotBasis& basis, Eigen::VectorXd weights, const PcaOptions& options = {})
+      : weights_(std::move(weights)) {
+    const Index n = weights_.size();
+    require(basis.snapshots() >= 2, "FunctionalPca: ", basis.snapshots(), " snapshots, give at least two");
+    require(basis.vectors().rows() == 3 * n && weights_.minCoeff() >= 0 && weights_.sum() > 0, "FunctionalPca: ", n,
+            " weights for ", basis.vectors().rows() / 3, " points, give one non-negative weight a point");
+    root_ = weights_.cwiseSqrt().replicate(1, 3).transpose().reshaped();
+    const Eigen::VectorXd centre = basis.mean_coordinates();
+    mean_ = basis.origin() + basis.vectors() * centre;
+    const double m = double(basis.snapshots()), coordinates = 3 * weights_.sum() * m;
+    // Snapshots are mean + B c, c - centre of covariance C: with L L^T = B^T W B, L^T C L has the eigenvectors of the modes.
+    const Eigen::MatrixXd weighted = root_.asDiagonal() * basis.vectors();
+    Eigen::MatrixXd gram = weighted.transpose() * weighted;
+    gram.diagonal().array() += 1e-14 * gram.trace();
+    const Eigen::LLT<Eigen::MatrixXd> cholesky(gram);
+    const Eigen::MatrixXd L = cholesky.matrixL();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(L.transpose() * basis.scatter() * L);
+    const Eigen::VectorXd values = solver.eigenvalues().reverse().cwiseMax(0);
+    double left = values.sum();
+    const double noise = 1e-13 * left;
+    Index count = 0;
+    while (count < std::min<Index>(options.max_modes, values.size()) && left > options.residual * coordinates &&
+           values[count] > noise)
+      left -= values[count++];
+    count = std::max<Index>(count, 1);
+    residual_ = std::max(left, 0.0) / coordinates + basis.residual();
+    variances_ = values.head(count) / m;
+    total_variance_ = values.sum() / m;
+    const Eigen::MatrixXd U = solver.eigenvectors().rightCols(count).rowwise().reverse();
+    modes_ = weighted * cholesky.matrixU().solve(U);
+    of_coordinates_ = modes_.transpose() * weighted;
+    centre_ = centre;
+  }
+
   Index modes() const { return modes_.cols(); }
   /// Mean squared coordinate distance of the snapshots to their reconstructions.
   double residual() const { return residual_; }
   /// Mean squared coefficient of each mode, largest first.
   const Eigen::VectorXd& variances() const { return variances_; }
 
+  /// Sum of all variances, those of modes not kept among them.
+  double total_variance() const { return total_variance_; }
+
   /// Coefficients of positions, 3 x n.
   Eigen::VectorXd project(const Mat3X& x) const { return project_vector(x.reshaped() - mean_); }
   /// Coefficients of velocities, 3 x n: no mean is taken off.
   Eigen::VectorXd project_velocity(const Mat3X& v) const { return project_vector(v.reshaped()); }
+  /// The same from coordinates in the basis of which the components were made: positions, or velocities, one a column.
+  Eigen::MatrixXd project_coordinates(const Eigen::MatrixXd& positions) const {
+    return of_coordinates_ * (positions.colwise() - centre_);
+  }
+  Eigen::MatrixXd project_velocity_coordinates(const Eigen::MatrixXd& velocities) const {
+    return of_coordinates_ * velocities;
+  }
   /// Positions of coefficients, 3 x n.
   Mat3X reconstruct(const Eigen::VectorXd& a) const {
     Eigen::VectorXd x = modes_ * a;
@@ -72,8 +118,10 @@ class FunctionalPca {
   Eigen::VectorXd project_vector(const Eigen::VectorXd& x) const { return modes_.transpose() * x.cwiseProduct(root_); }
 
   Eigen::VectorXd weights_, root_, mean_, variances_;
-  Eigen::MatrixXd modes_;  // scaled by the square roots of the weights: orthonormal columns
-  double residual_ = 0;
+  Eigen::MatrixXd modes_;           // scaled by the square roots of the weights: orthonormal columns
+  Eigen::MatrixXd of_coordinates_;  // of a basis
+  Eigen::VectorXd centre_;
+  double residual_ = 0, total_variance_ = 0;
 };
 
 }  // namespace dsns
