@@ -89,8 +89,8 @@ TEST_CASE("an inverse is a map of the same kind, with its differential", "[spher
     }
   }
   CHECK(worst < 1e-11);
-  CHECK(certify(back).min_jacobian == Approx(1 / gamma.displacement(charts_at(
-      sphere_quadrature(60).points)).J.maxCoeff()).epsilon(0.02));
+  CHECK(certify(back).min_jacobian ==
+        Approx(1 / gamma.displacement(charts_at(sphere_quadrature(60).points)).J.maxCoeff()).epsilon(0.02));
 }
 
 TEST_CASE("a map with a fold is not certified", "[sphere]") {

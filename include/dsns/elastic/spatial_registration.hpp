@@ -200,6 +200,19 @@ inline SpatialResult register_harmonic(std::span<const HarmonicSurface> first, s
   return result;
 }
 
+/// |h1 - O (h2 * gamma)|^2 of surfaces that are warped first and projected on harmonics then, as many as the last level has; h
+/// the SRNF alone.
+template <SurfaceStack First, SurfaceStack Second>
+double registered_energy(const First& first, const Second& second, const Mat3& rotation,
+                         const SphereDiffeomorphism& gamma, const SpatialOptions& options) {
+  require(!options.levels.empty() || !options.refinement.empty(), "registered_energy: no levels, give at least one");
+  SpatialLevel level = options.levels.empty() ? options.refinement.back() : options.levels.back();
+  level.position_weight = 0;
+  const detail::RefinementProblem problem(first, second, level, options);
+  SphereDisplacement end = gamma.displacement(charts_at(problem.points()));
+  return problem.at(std::move(end.y), std::move(end.J), rotation).energy;
+}
+
 /// Refines a registration by the levels of options.refinement, on surfaces that are warped first and projected then.
 /// first, second  corresponding surfaces, e.g. StillStack or MovingStack
 /// returns  the registration with further increments; the former one where no step helps or the increments would fold
@@ -234,13 +247,8 @@ SpatialResult refine_registration(const First& first, const Second& second, cons
     result.summary.stop = stop;
   }
   result.summary.steps += static_cast<int>(result.gamma.increments().size() - before);
-  if (!options.refinement.empty()) {
-    SpatialLevel level = options.levels.empty() ? options.refinement.back() : options.levels.back();
-    level.position_weight = 0;
-    const detail::RefinementProblem problem(first, second, level, options);
-    const SphereDisplacement end = result.gamma.displacement(charts_at(problem.points()));
-    result.summary.energy_after = problem.at(end.y, end.J, result.rotation).energy;
-  }
+  if (!options.refinement.empty())
+    result.summary.energy_after = registered_energy(first, second, result.rotation, result.gamma, options);
   report(progress, "spatial refinement", 1);
   return result;
 }

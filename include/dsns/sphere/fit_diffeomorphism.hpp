@@ -15,9 +15,9 @@ namespace dsns {
 
 struct DiffeomorphismFitOptions {
   std::vector<int> degrees{1, 2, 4, 8, 12, 16, 16, 16};  ///< of the increments, one each
-  double damping = 1e-6;           ///< times (l(l + 1))^2: keeps fields smooth where pairs are few
-  double min_step_jacobian = 0.3;  ///< of an increment
-  double longest_step = 0.8;       ///< radians
+  double damping = 1e-6;                        ///< times (l(l + 1))^2: keeps fields smooth where pairs are few
+  double min_step_jacobian = 0.3;               ///< of an increment
+  double longest_step = 0.8;                    ///< radians
   std::optional<SphereDiffeomorphism> start{};  ///< to append to; without it, the rotation nearest to the pairs
 };
 
