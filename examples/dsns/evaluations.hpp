@@ -2,6 +2,8 @@
 /// evaluate spatial and evaluate correspondence: registration against truths that are known; and registration in space alone.
 #include "bodies.hpp"
 
+#include <dsns/stats/symmetric_registration.hpp>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -42,6 +44,10 @@ struct CorrespondenceEvaluation {
 /// Two bodies whose vertices correspond by number, which is not shown: the second is remeshed, its sphere turned and warped.
 void evaluate_correspondence(const std::string& first, const std::string& second, const Settings& settings,
                              const CorrespondenceEvaluation& evaluation, Report& report);
+
+/// In space: one way where options.views is 0, else symmetrically.
+SpatialResult register_spatial(const AnyAnimatedSurface& first, const AnyAnimatedSurface& second,
+                               const SymmetricOptions& options, const Progress& progress);
 
 /// Where `register --spatial-only` begins.
 enum class SpatialBeginning { rotation, correspondence };

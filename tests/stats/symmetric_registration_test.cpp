@@ -27,7 +27,7 @@ SymmetricOptions quick() {
   options.registration.spatial.search = RotationSearch::none;
   options.registration.spatial.levels = {{3, 6, 0.02, 0.5}};
   options.registration.spatial.refinement = {{5, 7, 0.0, 0.5}};
-  options.fit.degrees = {4, 8};
+  options.fit.degrees = {1, 2, 4, 8};
   return options;
 }
 

@@ -9,22 +9,20 @@
 #include <dsns/sphere/sphere_map.hpp>
 
 #include <Eigen/Cholesky>
-#include <optional>
 
 namespace dsns {
 
 struct DiffeomorphismFitOptions {
   std::vector<int> degrees{1, 2, 4, 8, 12, 16, 16, 16};  ///< of the increments, one each
-  double damping = 1e-6;                        ///< times (l(l + 1))^2: keeps fields smooth where pairs are few
-  double min_step_jacobian = 0.3;               ///< of an increment
-  double longest_step = 0.8;                    ///< radians
-  std::optional<SphereDiffeomorphism> start{};  ///< to append to; without it, the rotation nearest to the pairs
+  double damping = 1e-6;           ///< times (l(l + 1))^2: keeps fields smooth where pairs are few
+  double min_step_jacobian = 0.3;  ///< of an increment
+  double longest_step = 0.8;       ///< radians
 };
 
 struct DiffeomorphismFit {
   SphereDiffeomorphism gamma;
   AngularDistance error;    ///< at the pairs, radians
-  std::vector<double> rms;  ///< of the start and after each increment, falling
+  std::vector<double> rms;  ///< after the rotation and after each increment, falling
   double min_jacobian = 0;  ///< by certify(), on a grid four times finer than the fields
 };
 
@@ -102,8 +100,7 @@ inline DiffeomorphismFit fit_diffeomorphism(const Mat3X& s, const Mat3X& y, cons
             ", give unit vectors");
   const Eigen::VectorXd w = weights * (4 * pi / weights.sum());
   DiffeomorphismFit fit;
-  fit.gamma =
-      options.start ? *options.start : SphereDiffeomorphism(nearest_rotation(y * w.asDiagonal() * s.transpose()));
+  fit.gamma = SphereDiffeomorphism(nearest_rotation(y * w.asDiagonal() * s.transpose()));
   ChartBatch here = charts_at(fit.gamma(s));
   fit.error = angular_distance(here.s, y, w);
   fit.rms.push_back(fit.error.rms);

@@ -20,7 +20,7 @@ struct SymmetricOptions {
   double warp_size = 0.087;  ///< radians in the root mean square: 5 degrees
   std::uint64_t seed = 0;    ///< of those warps
   double same_turn = 0.35;   ///< radians rms: maps farther than this from that of the least energy are left out
-  DiffeomorphismFitOptions fit{{4, 8, 12, 16, 16, 20, 20}};  ///< of the mean, from what the first view found
+  DiffeomorphismFitOptions fit{{1, 2, 4, 8, 12, 16, 20}};  ///< of the mean
 };
 
 /// The map of one direction is fitted, that of the other is its inverse.
@@ -62,21 +62,20 @@ inline SeenMap changed_over(SeenMap map) {
   return map;
 }
 
-/// The map fitted to the mean of those that make the same turn as the best; `start` where that folds.
+/// The map fitted to the mean; `otherwise` where that folds.
 inline SphereDiffeomorphism mean_map(const std::vector<SeenMap>& maps, const SphereQuadrature& q,
-                                     const SphereDiffeomorphism& start, DiffeomorphismFitOptions options) {
+                                     const SphereDiffeomorphism& otherwise, const DiffeomorphismFitOptions& options) {
   Mat3X s(3, 2 * q.size()), y(3, 2 * q.size());
   Mat3X there = Mat3X::Zero(3, q.size()), back = there;
   for (const SeenMap& map : maps) there += map.there, back += map.back;
   s << q.points, back.colwise().normalized();
   y << there.colwise().normalized(), q.points;
-  options.start = start;
   try {
     return fit_diffeomorphism(s, y, q.weights.replicate(2, 1), options).gamma;
   } catch (const InvalidArgument&) {
     throw;
   } catch (const Error&) {
-    return start;
+    return otherwise;
   }
 }
 
@@ -96,7 +95,7 @@ void judge(const F1& first, const F2& second, const RegistrationOptions& options
 /// Registers both ways and through common warps of both spheres, and gives the mean.
 /// returns  maps inverse to each other, and the same changed over for (second, first), to 1e-9 radians. The summaries are those
 ///          of the first view; energy_after and min_jacobian those of the result
-/// accuracy of man and woman walking, misses 8 % less than one way alone, in the root mean square [docs/spatial.md]
+/// accuracy of man and woman walking, misses 9 % less in the root mean square than one way alone [docs/spatial.md]
 template <AnimatedSurface F1, AnimatedSurface F2>
 SymmetricRegistration register_symmetrically(const F1& first, const F2& second, const SymmetricOptions& options = {},
                                              const Progress& progress = {}) {
