@@ -34,6 +34,7 @@ struct Settings {
   std::string json;
   Representation representation = Representation::sampled;
   RotationSearch search = RotationSearch::upright;
+  int views = 0;  ///< of registration in space alone: 0: one way; else both ways, so many times
   TemporalAlignment alignment = TemporalAlignment::whole;
   Preset preset = Preset::general;
   int steps = 0;            ///< of the fit; 0: the preset's

@@ -195,6 +195,17 @@ std::vector<Row> evaluate_seed(const Body& a, const Body& truth, std::uint64_t s
     const SpatialResult elastic = register_in_space(a.surface, second, options, std::ref(line));
     rows.push_back(judged("register_spatially alone", seed, judge, elastic.gamma, clock, share(elastic.summary)));
   }
+  if (settings.views > 0) {
+    SymmetricOptions both;
+    both.registration = options;
+    if (b.sequence.cap_faces > 0) both.second_mask = SphereMask(b.sequence, b.sphere);
+    both.views = settings.views;
+    both.seed = settings.seed + 100;
+    Clock clock;
+    const SpatialResult mean = register_spatial(a.surface, second, both, std::ref(line));
+    rows.push_back(judged(message("both ways, ", settings.views, " views"), seed, judge, mean.gamma, clock,
+                          mean.summary.energy_after / mean.summary.norm));
+  }
   add_ours(rows, a, b, second, seed, judge, options, evaluation, std::ref(line));
   return rows;
 }

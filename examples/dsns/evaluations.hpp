@@ -3,6 +3,8 @@
 /// alone.
 #include "bodies.hpp"
 
+#include <dsns/stats/symmetric_registration.hpp>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -54,6 +56,10 @@ struct StatisticsEvaluation {
 };
 /// Means of warped, turned, noisy copies of one motion, each on a clock of its own, against that motion.
 void evaluate_statistics(const StatisticsEvaluation& evaluation, const Settings& settings, Report& report);
+
+/// In space: one way where options.views is 0, else symmetrically.
+SpatialResult register_spatial(const AnyAnimatedSurface& first, const AnyAnimatedSurface& second,
+                               const SymmetricOptions& options, const Progress& progress);
 
 /// Where `register --spatial-only` begins.
 enum class SpatialBeginning { rotation, correspondence };

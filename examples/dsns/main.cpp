@@ -95,6 +95,16 @@ void add_registration(CLI::App* command, Settings& settings) {
   add_fit(command, settings);
 }
 
+void add_views(CLI::App* command, Settings& settings) {
+  command
+      ->add_option(
+          "--views", settings.views,
+          "registration in space, 0: of the second to the first alone; 1: the mean of both ways; more: also through "
+          "warps of both spheres")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 100));
+}
+
 void about_groups(CLI::App* command, Settings& settings) {
   command->add_flag("--keep-going", settings.keep_going, "leave out animations that cannot be used");
   command->add_option("--work", settings.work,
@@ -359,6 +369,7 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 20.0));
   add_registration(consistency_command, settings);
+  add_views(consistency_command, settings);
 
   CorrespondenceEvaluation correspondence;
   CLI::App* correspondence_command =
@@ -385,6 +396,7 @@ int main(int argc, char** argv) {
   add_choice(correspondence_command, "--search", settings.search,
              {{"upright", dsns::RotationSearch::upright}, {"full", dsns::RotationSearch::full}},
              "of the others: upright: the bodies stand alike (same up, same heading); full: they lie at will");
+  add_views(correspondence_command, settings);
   correspondence_command->add_option("--markdown", correspondence.markdown, "write the table to this file");
 
   StatisticsEvaluation statistics;
@@ -438,6 +450,8 @@ int main(int argc, char** argv) {
              "of --spatial-only: rotation: the best of many; correspondence: by intrinsic spectra, for other shapes "
              "and poses");
   register_command->get_option("--start")->needs(only);
+  add_views(register_command, settings);
+  register_command->get_option("--views")->needs(only)->excludes("--start");
   add_registration(register_command, settings);
 
   GeodesicOptions way;

@@ -42,16 +42,26 @@ MeshSequence shown(const Body& body, const std::vector<Mat3X>& frames, const Fac
 
 }  // namespace
 
+SpatialResult register_spatial(const AnyAnimatedSurface& first, const AnyAnimatedSurface& second,
+                               const SymmetricOptions& options, const Progress& progress) {
+  return options.views > 0 ? register_symmetrically(first, second, options, progress).there
+                           : register_in_space(first, second, options.registration, progress);
+}
+
 void register_spatial_only(const Body& a, const Body& b, const std::filesystem::path& out, SpatialBeginning beginning,
                            const Settings& settings, Report& report) {
   ProgressLine line;
-  RegistrationOptions options;
+  SymmetricOptions symmetric;
+  RegistrationOptions& options = symmetric.registration;
   if (a.normalized.sequence.cap_faces > 0) options.spatial.mask = SphereMask(a.normalized.sequence, a.sphere.vertices);
+  if (b.normalized.sequence.cap_faces > 0) symmetric.second_mask = SphereMask(b.normalized.sequence, b.sphere.vertices);
   options.spatial.search = settings.search;
   options.spatial.threads = settings.threads;
+  symmetric.views = settings.views;
+  symmetric.seed = settings.seed;
   const SpatialResult r = beginning == SpatialBeginning::correspondence
                               ? from_correspondence(a, b, options, report, std::ref(line))
-                              : register_in_space(a.surface, b.surface, options, std::ref(line));
+                              : register_spatial(a.surface, b.surface, symmetric, std::ref(line));
   const SpatialSummary& s = r.summary;
   report.figure("spatial.energy_before", "spatial energy before", s.energy_before);
   report.figure("spatial.energy_after", "spatial energy after", s.energy_after);

@@ -56,6 +56,7 @@ void refused(const std::string& array, const Archive::Value& value, const Archiv
 
 TEST_CASE("sphere map archive: both models come back to the bit, from whole files only", "[mesh]") {
   check_same(smooth());
+  check_same(inverted(smooth()));
   check_same(SphereDiffeomorphism());
   check_same(linear());
   check_same(PiecewiseLinearDiffeomorphism(latitude_longitude_sphere(5, 8)));

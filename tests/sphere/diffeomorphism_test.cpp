@@ -63,6 +63,36 @@ TEST_CASE("a composition is one after the other, rotations and fields alike", "[
   CHECK((compose(inner, outer)(s) - outer(inner(s))).cwiseAbs().maxCoeff() > 0.1);
 }
 
+TEST_CASE("an inverse is a map of the same kind, with its differential", "[sphere]") {
+  SphereDiffeomorphism gamma(rotation_exp(Vec3d(0.5, 0, 1)));
+  const SphereDiffeomorphism random = random_diffeomorphism(3, 5, 0.15);
+  for (const auto& v : random.increments()) gamma.append(v);
+  const SphereDiffeomorphism back = inverted(gamma);
+  const ChartBatch c = charts_at(test::sphere_points(70));
+  CHECK((back(gamma(c.s)) - c.s).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((back(c.s) - gamma.inverse(c.s)).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((back.inverse(c.s) - gamma(c.s)).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((inverted(back)(c.s) - gamma(c.s)).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((compose(back, gamma)(c.s) - c.s).cwiseAbs().maxCoeff() < 1e-12);
+
+  const SphereDisplacement d = back.displacement(c);
+  double worst = 0;
+  for (Index i = 0; i < c.size(); ++i) {
+    const auto jet = back(detail::chart_jet(c, i));
+    const auto round = gamma(jet);  // derivatives of both orders are those of the point itself
+    const auto point = detail::chart_jet(c, i);
+    for (int k = 0; k < 3; ++k) {
+      worst = std::max({worst, std::abs(jet[k].f - d.y(k, i)), std::abs(jet[k].g[0] - d.y1(k, i)),
+                        std::abs(jet[k].g[1] - d.y2(k, i)), std::abs(round[k].g[0] - point[k].g[0])});
+      for (std::size_t h = 0; h < point[k].h.size(); ++h)
+        worst = std::max(worst, std::abs(round[k].h[h] - point[k].h[h]));
+    }
+  }
+  CHECK(worst < 1e-11);
+  CHECK(certify(back).min_jacobian ==
+        Approx(1 / gamma.displacement(charts_at(sphere_quadrature(60).points)).J.maxCoeff()).epsilon(0.02));
+}
+
 TEST_CASE("a map with a fold is not certified", "[sphere]") {
   SphereVectorField v = SphereVectorField::zero(4);
   v.a[20] = 1.5;

@@ -48,7 +48,8 @@ struct SpatialOptions {
   int refinement_steps = 2;        ///< per level of the refinement; more while each leaves less than 0.3
   int latitudes = 24;              ///< quadrature of latitudes x 2 latitudes nodes
   int rotations = 600;             ///< candidates of the search
-  int refined = 16;                ///< best candidates, 30 degrees apart, that are refined before one is chosen
+  int refined = 48;                ///< best candidates, 30 degrees apart, to which fields of degree 1 are fitted
+  int bent = 8;                    ///< best of these, to which fields of degree 2 and 3 are fitted before one is chosen
   double damping = 1e-3;           ///< times (l(l + 1))^2: what a field of degree l must gain to be used
   double tolerance = 1e-3;         ///< a level ends when a step lowers the energy by less than this share of it
   double min_step_jacobian = 0.3;  ///< of a single increment

@@ -99,21 +99,28 @@ inline std::vector<RotationCandidate> distinct(const std::vector<RotationCandida
   return kept;
 }
 
-/// The best candidate after a few steps of low degree on a coarse grid.
+/// The best candidate after a few steps on a coarse grid: all are turned and shifted, the best of those bent by degree 2 and 3. The
+/// right turn of a large warp is often not among the first before that.
 inline RotationCandidate best_rotation(const SpatialPair& pair, const SpatialOptions& options) {
   std::vector<RotationCandidate> candidates = distinct(search_rotations(pair, options), options.refined);
   const SphereQuadrature q = masked(sphere_quadrature(12), options);
   const SpatialProblem problem = pair.problem(options.levels.front(), q);
-  for (auto& candidate : candidates) {
+  std::vector<std::pair<RotationCandidate, Particles>> found;
+  const auto descend_to = [&](Particles p, int degree) {
     std::vector<SphereVectorField> fields;
     std::vector<double> energies;
-    Particles p =
-        problem.at((candidate.R * q.points).colwise().normalized(), Eigen::VectorXd::Ones(q.size()), candidate.O);
-    for (const int degree : {1, 2, 3}) p = problem.minimise(std::move(p), degree, 8, fields, energies);
-    candidate.energy = p.energy;
-  }
-  return *std::min_element(candidates.begin(), candidates.end(),
-                           [](const auto& a, const auto& b) { return a.energy < b.energy; });
+    return problem.minimise(std::move(p), degree, 8, fields, energies);
+  };
+  for (const auto& candidate : candidates)
+    found.emplace_back(candidate, descend_to(problem.at((candidate.R * q.points).colwise().normalized(),
+                                                        Eigen::VectorXd::Ones(q.size()), candidate.O),
+                                             1));
+  const auto lower = [](const auto& a, const auto& b) { return a.second.energy < b.second.energy; };
+  std::stable_sort(found.begin(), found.end(), lower);
+  found.resize(std::min(found.size(), std::size_t(std::max(1, options.bent))));
+  for (auto& [candidate, particles] : found)
+    for (const int degree : {2, 3}) particles = descend_to(std::move(particles), degree);
+  return std::min_element(found.begin(), found.end(), lower)->first;
 }
 
 /// gamma from its parts, without the last increments for which the fine grid shows a fold; says in `summary` if any were dropped.
@@ -200,6 +207,19 @@ inline SpatialResult register_harmonic(std::span<const HarmonicSurface> first, s
   return result;
 }
 
+/// |h1 - O (h2 * gamma)|^2 of surfaces that are warped first and projected on harmonics then, as many as the last level has; h
+/// the SRNF alone.
+template <SurfaceStack First, SurfaceStack Second>
+double registered_energy(const First& first, const Second& second, const Mat3& rotation,
+                         const SphereDiffeomorphism& gamma, const SpatialOptions& options) {
+  require(!options.levels.empty() || !options.refinement.empty(), "registered_energy: no levels, give at least one");
+  SpatialLevel level = options.levels.empty() ? options.refinement.back() : options.levels.back();
+  level.position_weight = 0;
+  const detail::RefinementProblem problem(first, second, level, options);
+  SphereDisplacement end = gamma.displacement(charts_at(problem.points()));
+  return problem.at(std::move(end.y), std::move(end.J), rotation).energy;
+}
+
 /// Refines a registration by the levels of options.refinement, on surfaces that are warped first and projected then.
 /// first, second  corresponding surfaces, e.g. StillStack or MovingStack
 /// returns  the registration with further increments; the former one where no step helps or the increments would fold
@@ -234,13 +254,8 @@ SpatialResult refine_registration(const First& first, const Second& second, cons
     result.summary.stop = stop;
   }
   result.summary.steps += static_cast<int>(result.gamma.increments().size() - before);
-  if (!options.refinement.empty()) {
-    SpatialLevel level = options.levels.empty() ? options.refinement.back() : options.levels.back();
-    level.position_weight = 0;
-    const detail::RefinementProblem problem(first, second, level, options);
-    const SphereDisplacement end = result.gamma.displacement(charts_at(problem.points()));
-    result.summary.energy_after = problem.at(end.y, end.J, result.rotation).energy;
-  }
+  if (!options.refinement.empty())
+    result.summary.energy_after = registered_energy(first, second, result.rotation, result.gamma, options);
   report(progress, "spatial refinement", 1);
   return result;
 }

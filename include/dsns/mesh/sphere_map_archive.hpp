@@ -20,6 +20,7 @@ inline void store_sphere_map(Archive& archive, const SphereDiffeomorphism& gamma
     Eigen::MatrixXd potentials(v.a.size(), 2);
     potentials << v.a, v.b;
     archive.set(message("sphere_map.increment.", k), std::move(potentials));
+    if (v.step == FieldStep::inverse) archive.set(message("sphere_map.inverse.", k), std::int64_t(1));
   }
 }
 inline void store_sphere_map(Archive& archive, const PiecewiseLinearDiffeomorphism& gamma) {
@@ -46,7 +47,8 @@ struct SphereMapReader<SphereDiffeomorphism> {
       const auto& v = archive.get<Eigen::MatrixXd>(message("sphere_map.increment.", k));
       require<FileError>(v.cols() == 2 && v.allFinite(), archive.name(), ": increment ", k, " of the map has ",
                          v.cols(), " potentials, or they are not finite: wanted are 2");
-      gamma.append({harmonic_degree(v.rows()), v.col(0), v.col(1)});
+      const bool inverse = archive.contains(message("sphere_map.inverse.", k));
+      gamma.append({harmonic_degree(v.rows()), v.col(0), v.col(1), inverse ? FieldStep::inverse : FieldStep::forward});
     }
     const DiffeomorphismCertificate certificate = certify(gamma);
     require<FileError>(certificate.holds(), archive.name(), ": the map folds, its Jacobian falls to ",

@@ -1,10 +1,10 @@
 #pragma once
-/// Diffeomorphisms of the sphere as gamma = exp(v_n) o ... o exp(v_1) o R: a rotation, then smooth fields.
+/// Diffeomorphisms of the sphere as gamma = exp(v_n) o ... o exp(v_1) o R: a rotation, then smooth fields. An increment may also
+/// be the inverse of such an exponential, so that inverses and compositions are of the same kind.
+#include <dsns/sphere/increment.hpp>
 #include <dsns/sphere/quadrature.hpp>
 #include <dsns/sphere/rotations.hpp>
-#include <dsns/sphere/vector_field.hpp>
 
-#include <Eigen/LU>
 #include <random>
 #include <vector>
 
@@ -26,7 +26,7 @@ class SphereDiffeomorphism {
   Vec3<T> operator()(const Vec3<T>& s) const {
     Vec3<T> y;
     for (int k = 0; k < 3; ++k) y[k] = rotation_(k, 0) * s[0] + rotation_(k, 1) * s[1] + rotation_(k, 2) * s[2];
-    for (const auto& v : increments_) y = exponential(v, y);
+    for (const auto& v : increments_) y = increment(v, y);
     return y;
   }
 
@@ -55,7 +55,7 @@ inline SphereDisplacement SphereDiffeomorphism::displacement(const ChartBatch& c
     const Index count = std::min(tile, n - first);
     for (const auto& v : increments_) {
       const ChartBatch here = charts_at(total.y.middleCols(first, count));
-      const SphereDisplacement step = displace(v, here);
+      const SphereDisplacement step = increment(v, here);
       for (Index i = 0; i < count; ++i)
         for (Mat3X* image : {&total.y1, &total.y2}) {
           const Vec3d t = image->col(first + i);
@@ -76,33 +76,9 @@ inline Mat3X SphereDiffeomorphism::operator()(const Mat3X& s) const {
 }
 
 inline Mat3X SphereDiffeomorphism::inverse(const Mat3X& y) const {
-  Mat3X target = y;
-  for (auto v = increments_.rbegin(); v != increments_.rend(); ++v) {
-    SphereVectorField back{v->degree, -v->a, -v->b};
-    ChartBatch here = charts_at(target);
-    Mat3X s = displace(back, here).y;
-    double worst = 1;
-    for (int iteration = 0; iteration < 30 && worst > 1e-14; ++iteration) {
-      here = charts_at(s);
-      const SphereDisplacement image = displace(*v, here);
-      worst = 0;
-      for (Index i = 0; i < s.cols(); ++i) {
-        const Vec3d miss = target.col(i) - image.y.col(i);
-        Eigen::Matrix<double, 3, 2> D;
-        D << image.y1.col(i), image.y2.col(i);
-        const Eigen::Matrix2d normal = D.transpose() * D;
-        Eigen::Vector2d step = normal.inverse() * (D.transpose() * miss);
-        const double length = step.norm();
-        if (length > 0.3) step *= 0.3 / length;  // far from the solution the linear model may overshoot
-        s.col(i) = (s.col(i) + here.e1.col(i) * step[0] + here.e2.col(i) * step[1]).normalized();
-        worst = std::max(worst, miss.norm());
-      }
-    }
-    require<Error>(worst < 1e-9, "SphereDiffeomorphism::inverse: Newton's method stopped ", worst,
-                   " radians away, the map is not invertible there");
-    target = s;
-  }
-  return (rotation_.transpose() * target).colwise().normalized();
+  Mat3X s = y;
+  for (auto v = increments_.rbegin(); v != increments_.rend(); ++v) s = increment_inverse(*v, s);
+  return (rotation_.transpose() * s).colwise().normalized();
 }
 
 /// The field R v(R^T s), exactly: harmonics of one degree turn into each other.
@@ -110,7 +86,7 @@ inline SphereVectorField rotated(const SphereVectorField& v, const Mat3& R) {
   const SphereQuadrature q = sphere_quadrature(v.degree + 1);
   const HarmonicCoefficients<2> turned = harmonic_coefficients<2>(
       harmonic_sum<2>(detail::potentials(v), (R.transpose() * q.points).colwise().normalized()), q, v.degree);
-  return {v.degree, turned.col(0), turned.col(1)};
+  return {v.degree, turned.col(0), turned.col(1), v.step};
 }
 
 /// outer(inner(s)).
@@ -120,6 +96,19 @@ inline SphereDiffeomorphism compose(const SphereDiffeomorphism& outer, const Sph
   for (const auto& v : inner.increments()) both.append(rotated(v, outer.rotation()));
   for (const auto& v : outer.increments()) both.append(v);
   return both;
+}
+
+/// The inverse as a map of its own.
+/// accuracy 1e-12 radians [sphere/diffeomorphism_test]
+inline SphereDiffeomorphism inverted(const SphereDiffeomorphism& gamma) {
+  const Mat3 back = gamma.rotation().transpose();
+  SphereDiffeomorphism out(back);
+  for (auto v = gamma.increments().rbegin(); v != gamma.increments().rend(); ++v) {
+    SphereVectorField turned = rotated(*v, back);
+    turned.step = v->step == FieldStep::forward ? FieldStep::inverse : FieldStep::forward;
+    out.append(std::move(turned));
+  }
+  return out;
 }
 
 /// Proof on a grid that gamma is a diffeomorphism: four times finer than the fields' bandwidth.

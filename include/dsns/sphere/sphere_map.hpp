@@ -13,7 +13,7 @@ namespace dsns {
 inline SphereDiffeomorphism interpolated(const SphereDiffeomorphism& gamma, double t) {
   require(t >= 0 && t <= 1, "interpolated: t is ", t, ", give one from 0 to 1");
   SphereDiffeomorphism between(rotation_exp(t * rotation_log(gamma.rotation())));
-  for (const SphereVectorField& v : gamma.increments()) between.append({v.degree, t * v.a, t * v.b});
+  for (const SphereVectorField& v : gamma.increments()) between.append({v.degree, t * v.a, t * v.b, v.step});
   const DiffeomorphismCertificate certificate = certify(between);
   require<Error>(certificate.holds(), "interpolated: at t = ", t, " the map folds, its Jacobian falls to ",
                  certificate.min_jacobian, ": compose it of smaller increments");

@@ -7,13 +7,20 @@
 
 namespace dsns {
 
+/// What a field is to a composition, see increment.hpp.
+enum class FieldStep {
+  forward,  ///< exp(v)
+  inverse,  ///< the map that undoes exp(v)
+};
+
 /// Coefficients over the harmonics of degree 0 to `degree` (index l^2 + l + m; the constants are without effect).
 struct SphereVectorField {
   int degree = 1;
   Eigen::VectorXd a, b;  ///< gradient part and rotated-gradient part, (degree + 1)^2 each, radians
+  FieldStep step = FieldStep::forward;
 
   static SphereVectorField zero(int degree) {
-    return {degree, Eigen::VectorXd::Zero(harmonic_count(degree)), Eigen::VectorXd::Zero(harmonic_count(degree))};
+    return {degree, Eigen::VectorXd::Zero(harmonic_count(degree)), Eigen::VectorXd::Zero(harmonic_count(degree)), {}};
   }
 };
 
