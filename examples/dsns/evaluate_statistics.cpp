@@ -60,14 +60,14 @@ double rms_distance(const std::vector<Mat3X>& a, const std::vector<Mat3X>& b) {
   return std::sqrt(square);
 }
 
-struct Row {
+struct CopiesRow {
   std::size_t copies;
   double apart, agreement, warps, order, seconds;
   GroupSummary space;
   KarcherSummary time;
 };
 
-Row evaluate(std::size_t copies, const StatisticsEvaluation& evaluation, const Settings& settings) {
+CopiesRow evaluate(std::size_t copies, const StatisticsEvaluation& evaluation, const Settings& settings) {
   const LimbedBody body = moving_body();
   const TriangleMesh sphere = icosphere(evaluation.level);
   const int frames = settings.frames;
@@ -96,8 +96,9 @@ Row evaluate(std::size_t copies, const StatisticsEvaluation& evaluation, const S
   const RegisteredSurface back(truth, r.spatial.rotation, r.spatial.gamma, r.temporal.warp);
   std::vector<Mat3X> expected;
   for (const double t : equidistant_times(frames)) expected.push_back(positions(back, m.sphere.vertices, t));
-  Row row{copies,          0, rms_distance(m.frames(frames), expected) / size, 0, 0, seconds.count(), m.group.summary,
-          m.curves.summary};
+  CopiesRow row{
+      copies,          0, rms_distance(m.frames(frames), expected) / size, 0, 0, seconds.count(), m.group.summary,
+      m.curves.summary};
   for (std::size_t i = 0; i < copies; ++i) {
     row.warps = std::max(row.warps, distance(compose(clocks[i], m.curves.warps[i]), r.temporal.warp));
     row.apart = std::max(row.apart, distance(clocks[i], TimeWarp()));
@@ -120,7 +121,7 @@ void evaluate_statistics(const StatisticsEvaluation& evaluation, const Settings&
                   "other order, of the size", "energy of shapes: as they are, at the template, at the end",
                   "energy of motions before, after", "iterations", "never rises", "seconds"});
   for (const int copies : evaluation.copies) {
-    const Row row = evaluate(std::size_t(copies), evaluation, settings);
+    const CopiesRow row = evaluate(std::size_t(copies), evaluation, settings);
     report.say(message(copies, " copies:"));
     report.row("rows");
     report.note("copies", std::int64_t(copies));
