@@ -156,11 +156,13 @@ int evaluate_temporal(const std::vector<std::string>& sources, const Settings& s
   }
   write_tables(rows, evaluation, report);
   if (evaluation.out.empty() || rows.empty()) return failures;
-  if (draw_boxes(rows, evaluation.out))
+  if (draw_boxes(rows, evaluation.out) && draw_paces(evaluation, settings)) {
     report.wrote("picture", evaluation.out / "temporal_warps.svg");
-  else
-    report.say("No picture was drawn: gnuplot is not there (Debian: gnuplot-nox); its script is in " +
+    report.wrote("paces", evaluation.out / "temporal_paces.svg");
+  } else {
+    report.say("No picture was drawn: gnuplot is not there (Debian: gnuplot-nox); its scripts are in " +
                evaluation.out.string() + ".");
+  }
   return failures;
 }
 

@@ -1,7 +1,9 @@
 #include "temporal_curves.hpp"
 
 #include "fits.hpp"
+#include "plot.hpp"
 
+#include <dsns/io/atomic_file.hpp>
 #include <dsns/mesh/sampling.hpp>
 #include <dsns/surface/sampled.hpp>
 
@@ -38,6 +40,23 @@ Mat3X points_of(const Body& body, const Settings& settings) {
 TimeWarp random_pace(const TemporalEvaluation& evaluation, int number, const Settings& settings) {
   const std::uint64_t seed = settings.seed * 1000 + std::uint64_t(number) + 1;
   return evaluation.strong ? random_time_warp(seed, 0.03, 4) : random_time_warp(seed, 0.2, 2.3);
+}
+
+bool draw_paces(const TemporalEvaluation& evaluation, const Settings& settings) {
+  const std::filesystem::path script = evaluation.out / "temporal_paces.gnuplot";
+  constexpr int points = 200;
+  std::string text = "$paces << END\n";
+  for (int k = 0; k < evaluation.warps; ++k) {
+    const TimeWarp pace = random_pace(evaluation, k, settings);
+    for (int i = 0; i <= points; ++i) text += message(double(i) / points, " ", pace(double(i) / points), "\n");
+    text += "\n";
+  }
+  text +=
+      "END\nset terminal svg size 520,520 background 'white'\nset output 'temporal_paces.svg'\nset size square\n"
+      "set grid\nset xlabel 'time'\nset ylabel 'time of the motion that is played'\nunset key\n"
+      "plot $paces with lines lc 1, x with lines lc 0\n";
+  write_file_atomically(script, text);
+  return draw(script);
 }
 
 std::vector<MotionCurve> curves_of(const Body& body, const std::vector<int>& frame_counts, const Settings& settings,

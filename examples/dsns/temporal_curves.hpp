@@ -52,6 +52,9 @@ struct Moving {
 
 /// A random warp of the slopes that the experiment asks for.
 TimeWarp random_pace(const TemporalEvaluation& evaluation, int number, const Settings& settings);
+/// Draws those of an evaluation into its folder.
+/// returns  whether there is a picture; the script for gnuplot is there in any case
+bool draw_paces(const TemporalEvaluation& evaluation, const Settings& settings);
 
 /// A curve as a function, or samples of it alone.
 struct MotionCurve {
