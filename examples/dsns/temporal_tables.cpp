@@ -1,21 +1,15 @@
 #include "temporal_tables.hpp"
 
+#include "gnuplot.hpp"
 #include "tables.hpp"
 
 #include <dsns/core/errors.hpp>
 #include <dsns/io/atomic_file.hpp>
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-
-extern char** environ;
 
 namespace dsns::program {
 
@@ -199,18 +193,7 @@ bool draw_boxes(const std::vector<RecoveryRow>& rows, const std::filesystem::pat
                   "unset key\nset xrange [0.3:",
                   double(all.size()) + 0.7, "]\nset xtics (", tics, ")\nplot ", plots, "\n");
   write_file_atomically(script, text);
-  std::string program = "gnuplot", argument = script.filename().string(), in = folder.string();
-  std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
-  posix_spawn_file_actions_t actions;  // what it has to say is whether there is a picture
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, in.c_str());
-  for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
-    posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
-  pid_t child = 0;
-  const int failed = posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  int status = 0;
-  return failed == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return run_gnuplot(script);
 }
 
 }  // namespace dsns::program
