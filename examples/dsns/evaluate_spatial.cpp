@@ -2,6 +2,7 @@
 #include "commands.hpp"
 #include "evaluate_tables.hpp"
 #include "evaluations.hpp"
+#include "gnuplot.hpp"
 
 #include <dsns/elastic/known_warp.hpp>
 #include <dsns/io/atomic_file.hpp>
@@ -102,6 +103,20 @@ SpatialRow evaluate_warp(const std::string& name, const Body& first, const Again
           cpu_seconds};
 }
 
+/// What is left of the warps of each sequence, in boxes.
+void plot(const std::vector<SpatialRow>& rows, const std::filesystem::path& picture, Report& report) {
+  std::vector<Box> boxes;
+  for (const SpatialRow& row : rows) {
+    const std::string label = std::filesystem::path(row.file).stem().string();
+    if (boxes.empty() || boxes.back().label != label) boxes.push_back({label, {}});
+    boxes.back().values.push_back(row.after);
+  }
+  if (draw_boxes(boxes, "left of the warp, degrees rms", picture))
+    report.wrote("picture", picture);
+  else
+    report.say("No picture was drawn: gnuplot is not there (Debian: gnuplot-nox); its script is beside it.");
+}
+
 }  // namespace
 
 int evaluate_spatial(const std::vector<std::string>& sources, const Settings& settings,
@@ -156,6 +171,7 @@ int evaluate_spatial(const std::vector<std::string>& sources, const Settings& se
   report.section("");
   if (!evaluation.csv.empty()) write_file_atomically(evaluation.csv, csv(rows));
   if (!evaluation.markdown.empty()) write_file_atomically(evaluation.markdown, markdown(rows));
+  if (!evaluation.plot.empty() && !rows.empty()) plot(rows, evaluation.plot, report);
   return failures;
 }
 

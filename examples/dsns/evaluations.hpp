@@ -22,7 +22,7 @@ struct SpatialEvaluation {
   int warp_degree = 3;                     ///< of the fields
   SecondMap map = SecondMap::own;
   std::vector<std::string> without;  ///< parts to leave out: jacobian, smoothing, positions, refinement
-  std::filesystem::path csv, markdown;
+  std::filesystem::path csv, markdown, plot;
 };
 /// Warps and turns every sequence by maps that are known and registers it back. With fitted surfaces both sides are fitted with
 /// seeds of their own.

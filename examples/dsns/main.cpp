@@ -334,6 +334,7 @@ int main(int argc, char** argv) {
       command_of(evaluate_command, "spatial", "find known warps and turns of each animation again", [&] {
         check_output(spatial.csv.string(), "");
         check_output(spatial.markdown.string(), "");
+        check_output(spatial.plot.string(), ".svg");
         unusable = evaluate_spatial(sources, settings, spatial, report);
       });
   spatial_command->add_option("FILES", sources, "animations")->required()->expected(1, 10000);
@@ -353,6 +354,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"jacobian", "smoothing", "positions", "refinement"}));
   spatial_command->add_option("--csv", spatial.csv, "write the table to this file");
   spatial_command->add_option("--markdown", spatial.markdown, "likewise");
+  spatial_command->add_option("--plot", spatial.plot, "draw boxes of what is left to this SVG, by gnuplot");
   add_choice(spatial_command, "--surface", settings.representation,
              {{"sampled", Representation::sampled}, {"neural", Representation::neural}},
              "sampled: the mesh itself; neural: fits to it, of either side with a seed of its own");

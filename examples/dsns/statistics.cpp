@@ -1,6 +1,6 @@
 // modes, sample, distances: what is said of a group of animations.
 #include "commands.hpp"
-#include "plot.hpp"
+#include "gnuplot.hpp"
 #include "registration.hpp"
 #include "scene.hpp"
 #include "tables.hpp"
@@ -125,7 +125,7 @@ void modes(const Group& group, const Study& study, const Settings& settings, Rep
   if (!assessed) return;
   const fs::path script = study.out / "quality.gnuplot";
   write_file_atomically(script, quality_script(*assessed));
-  if (draw(script))
+  if (run_gnuplot(script))
     report.wrote("quality", study.out / "quality.svg");
   else
     report.say("  No picture of the quality: gnuplot is missing, or failed on " + script.string());

@@ -1,7 +1,7 @@
 #include "temporal_curves.hpp"
 
 #include "fits.hpp"
-#include "plot.hpp"
+#include "gnuplot.hpp"
 
 #include <dsns/io/atomic_file.hpp>
 #include <dsns/mesh/sampling.hpp>
@@ -56,7 +56,7 @@ bool draw_paces(const TemporalEvaluation& evaluation, const Settings& settings) 
       "set grid\nset xlabel 'time'\nset ylabel 'time of the motion that is played'\nunset key\n"
       "plot $paces with lines lc 1, x with lines lc 0\n";
   write_file_atomically(script, text);
-  return draw(script);
+  return run_gnuplot(script);
 }
 
 std::vector<MotionCurve> curves_of(const Body& body, const std::vector<int>& frame_counts, const Settings& settings,

@@ -1,6 +1,6 @@
 #include "temporal_tables.hpp"
 
-#include "plot.hpp"
+#include "gnuplot.hpp"
 #include "tables.hpp"
 
 #include <dsns/core/errors.hpp>
@@ -174,26 +174,13 @@ std::string markdown(const std::vector<StretchRow>& rows) {
 }
 
 bool draw_boxes(const std::vector<RecoveryRow>& rows, const std::filesystem::path& folder) {
-  const std::vector<RecoveryGroup> all = groups(rows);
-  const std::filesystem::path script = folder / "temporal_warps.gnuplot", picture = folder / "temporal_warps.svg";
-  std::string text, tics, plots;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    text += message("$box", k + 1, " << END\n");
-    for (const double x : all[k].values) text += message(std::max(x, 1e-9), "\n");
-    text += "END\n";
-    std::string label = all[k].label;
+  std::vector<Box> boxes;
+  for (const RecoveryGroup& group : groups(rows)) {
+    std::string label = group.label;
     label.replace(label.find("; "), 2, "\\n");
-    tics += message(k == 0 ? "" : ", ", "\"", label, "\" ", k + 1);
-    plots += message(k == 0 ? "" : ", ", "$box", k + 1, " using (", k + 1, "):1 lc ", all[k].method == "ours" ? 2 : 1);
+    boxes.push_back({label, group.values, group.method == "ours" ? 2 : 1});
   }
-  text += message("set terminal svg size ", 160 + 90 * all.size(), ",620 background 'white'\nset output '",
-                  picture.filename().string(),
-                  "'\nset logscale y\nset format y '10^{%T}'\nset grid y\nset ylabel 'L2 error of the warp'\n"
-                  "set style data boxplot\nset style fill solid 0.3\nset boxwidth 0.5\nset xtics rotate by -35\n"
-                  "unset key\nset xrange [0.3:",
-                  double(all.size()) + 0.7, "]\nset xtics (", tics, ")\nplot ", plots, "\n");
-  write_file_atomically(script, text);
-  return draw(script);
+  return draw_boxes(boxes, "L2 error of the warp", folder / "temporal_warps.svg");
 }
 
 }  // namespace dsns::program

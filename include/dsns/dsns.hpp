@@ -36,9 +36,11 @@
 #include <dsns/nn/surface_archive.hpp>
 #include <dsns/nn/warp_network.hpp>
 #include <dsns/sphere/fit_diffeomorphism.hpp>
+#include <dsns/stats/frame_registration.hpp>
 #include <dsns/stats/groups.hpp>
 #include <dsns/stats/moving_mean.hpp>
 #include <dsns/stats/principal_modes.hpp>
+#include <dsns/stats/symmetric_registration.hpp>
 #include <dsns/surface/analytic.hpp>
 #include <dsns/surface/any_surface.hpp>
 #include <dsns/surface/motion.hpp>

@@ -269,7 +269,7 @@ inline int surface_degree(const SpatialOptions& options) {
 
 /// Registers one surface to another, of any kind, and refines.
 /// accuracy warps of degree 6 up to 10 degrees, with any turns of body and sphere, are found again to 0.1 degrees on bodies of
-///          several limbs; of warps of degree 3 and 13 to 24 degrees 17 of 20 to 0.15 [examples/known_warps]
+///          several limbs; of warps of degree 3 and 13 to 24 degrees 18 of 20 to 0.15 [examples/known_warps]
 template <Surface S1, Surface S2>
 SpatialResult register_spatially(const S1& first, const S2& second, const SpatialOptions& options = {},
                                  const Progress& progress = {}) {

@@ -10,6 +10,7 @@ namespace dsns {
 struct MatchedRegistrationOptions {
   RegistrationOptions registration;  ///< spatial.levels and spatial.start are not used
   CorrespondOptions correspond;
+  SphereLandmarks landmarks;  ///< of the correspondence; the refinement does not know them
   DiffeomorphismFitOptions smoothing{{1, 2, 4, 8, 12, 16, 20, 20, 24, 24}};  ///< of the correspondence, for derivatives
   std::vector<SpatialLevel> levels{{8, 16, 0.0, 0.5}};                       ///< from there on
   /// Elastic energy, as a share of the first body's, up to which the refinement is believed: of bodies in one pose 0.02 to 0.05
@@ -30,7 +31,8 @@ MatchedRegistration register_matched(const F1& first, MatchingBody first_body, c
                                      const Progress& progress = {}) {
   const SphereQuadrature q = fibonacci_sphere(4000);
   const Eigen::VectorXd density = area_densities(tangents(first, charts_at(q.points), 0.0));
-  Correspondence c = correspond(std::move(first_body), std::move(second_body), options.correspond, {}, {}, progress);
+  Correspondence c =
+      correspond(std::move(first_body), std::move(second_body), options.correspond, {}, options.landmarks, progress);
   MatchedRegistration out{{}, std::move(c.summary), false};
   RegistrationOptions from = options.registration;
   from.spatial.search = RotationSearch::none;

@@ -95,7 +95,7 @@ void judge(const F1& first, const F2& second, const RegistrationOptions& options
 /// Registers both ways and through common warps of both spheres, and gives the mean.
 /// returns  maps inverse to each other, and the same changed over for (second, first), to 1e-9 radians. The summaries are those
 ///          of the first view; energy_after and min_jacobian those of the result
-/// accuracy of man and woman walking, misses 9 % less in the root mean square than one way alone [docs/spatial.md]
+/// accuracy of man and woman walking, misses 8 % less in the root mean square than one way alone [docs/spatial.md]
 template <AnimatedSurface F1, AnimatedSurface F2>
 SymmetricRegistration register_symmetrically(const F1& first, const F2& second, const SymmetricOptions& options = {},
                                              const Progress& progress = {}) {
