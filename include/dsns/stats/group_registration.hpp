@@ -120,7 +120,7 @@ class SpatialGroup {
     return mean;
   }
 
-  /// Every member a step nearer to the mean; one that would fold stays where it is.
+  /// Every member a step nearer to the mean; one that would come near to a fold stays where it is.
   std::vector<MovingRegistration> step(const std::vector<MovingRegistration>& members, const Fields& mean) const {
     std::vector<MovingRegistration> next = members;
     const SpatialOptions spatial = options_of(members);
@@ -137,7 +137,8 @@ class SpatialGroup {
         return 0;
       });
       r.summary.min_jacobian = certify(r.gamma).min_jacobian;
-      if (!(r.summary.min_jacobian > 0)) r = members[i].spatial;
+      // Between the nodes of the grid the Jacobian is smaller than on them: what is compressed much is not compressed further.
+      if (r.summary.min_jacobian < std::min(0.1, members[i].spatial.summary.min_jacobian)) r = members[i].spatial;
     });
     return next;
   }
@@ -166,10 +167,10 @@ class SpatialGroup {
   SpatialLevel level_;
 };
 
-/// Turns and maps centred.
+/// Turns and maps centred; the latter only where all stay free of folds.
 /// returns  the mean field of the maps that is left, radians
 inline double centre_in_space(std::vector<MovingRegistration>& members, const GroupTemplate& chosen,
-                              const GaugeOptions& options) {
+                              const GaugeOptions& options, int threads) {
   std::vector<Mat3> turns;
   std::vector<SphereDiffeomorphism> maps;
   for (const std::size_t i : chosen.order) {
@@ -177,11 +178,16 @@ inline double centre_in_space(std::vector<MovingRegistration>& members, const Gr
     maps.push_back(members[i].spatial.gamma);
   }
   const Mat3 back = karcher_mean(turns).transpose();
+  for (auto& member : members) member.spatial.rotation = back * member.spatial.rotation;
   CentredMaps spheres = centred(std::move(maps), options);
+  std::vector<double> jacobians(members.size());
+  parallel_for(static_cast<int>(members.size()), threads,
+               [&](int k) { jacobians[std::size_t(k)] = certify(spheres.maps[std::size_t(k)]).min_jacobian; });
+  if (*std::min_element(jacobians.begin(), jacobians.end()) <= 0) return spheres.before;
   for (std::size_t k = 0; k < chosen.order.size(); ++k) {
     SpatialResult& member = members[chosen.order[k]].spatial;
-    member.rotation = back * member.rotation;
     member.gamma = std::move(spheres.maps[k]);
+    member.summary.min_jacobian = jacobians[k];
   }
   return spheres.after;
 }
@@ -283,14 +289,14 @@ GroupRegistration register_group(const Load& load, const GroupTemplate& chosen, 
   if (!detail::continue_group(group, store)) {
     summary.energy_unregistered = space.mean_of(std::vector<MovingRegistration>(group.members.size())).energy;
     detail::centre_in_time(group.members, chosen);
-    summary.gauge = detail::centre_in_space(group.members, chosen, options.gauge);
+    summary.gauge = detail::centre_in_space(group.members, chosen, options.gauge, options.registration.spatial.threads);
   }
   auto mean = space.mean_of(group.members);
   if (summary.energy.empty()) summary.energy.push_back(mean.energy);
   while (int(summary.energy.size()) <= options.iterations && !summary.converged) {
     report(progress, "registration to the mean", double(summary.energy.size() - 1) / options.iterations);
     std::vector<MovingRegistration> next = space.step(group.members, mean.field);
-    const double gauge = detail::centre_in_space(next, chosen, options.gauge);
+    const double gauge = detail::centre_in_space(next, chosen, options.gauge, options.registration.spatial.threads);
     auto next_mean = space.mean_of(next);
     const double gain = mean.energy - next_mean.energy;
     summary.converged = gain <= options.tolerance * mean.energy + options.least * summary.energy_unregistered;
@@ -303,10 +309,8 @@ GroupRegistration register_group(const Load& load, const GroupTemplate& chosen, 
     detail::keep_group(group, store);
   }
   summary.norm = mean.norm;
-  for (auto& member : group.members) {
-    member.spatial.summary.min_jacobian = certify(member.spatial.gamma).min_jacobian;
+  for (const auto& member : group.members)
     summary.min_jacobian = std::min(summary.min_jacobian, member.spatial.summary.min_jacobian);
-  }
   report(progress, "registration to the mean", 1);
   return group;
 }
