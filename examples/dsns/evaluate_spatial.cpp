@@ -108,7 +108,7 @@ void plot(const std::vector<SpatialRow>& rows, const std::filesystem::path& pict
   std::vector<Box> boxes;
   for (const SpatialRow& row : rows) {
     const std::string label = std::filesystem::path(row.file).stem().string();
-    if (boxes.empty() || boxes.back().label != label) boxes.push_back({label, {}});
+    if (boxes.empty() || boxes.back().label != label) boxes.push_back({label, {}, 2});
     boxes.back().values.push_back(row.after);
   }
   if (draw_boxes(boxes, "left of the warp, degrees rms", picture))

@@ -41,12 +41,12 @@ bool draw_boxes(const std::vector<Box>& boxes, const std::string& quantity, cons
     tics += message(k == 0 ? "" : ", ", "\"", boxes[k].label, "\" ", k + 1);
     plots += message(k == 0 ? "" : ", ", "$box", k + 1, " using (", k + 1, "):1 lc ", boxes[k].color);
   }
-  text += message("set terminal svg size ", 160 + 90 * boxes.size(), ",620 background 'white'\nset output '",
-                  picture.filename().string(), "'\nset logscale y\nset format y '10^{%T}'\nset grid y\nset ylabel '",
-                  quantity,
-                  "'\nset style data boxplot\nset style fill solid 0.3\nset boxwidth 0.5\nset xtics rotate by -35\n"
-                  "unset key\nset xrange [0.3:",
-                  double(boxes.size()) + 0.7, "]\nset xtics (", tics, ")\nplot ", plots, "\n");
+  text += message(
+      "set terminal svg size ", 160 + 90 * boxes.size(), ",620 background 'white'\nset output '",
+      picture.filename().string(), "'\nset logscale y\nset format y '10^{%T}'\nset grid y\nset ylabel '", quantity,
+      "'\nset style data boxplot\nset style fill solid 0.3\nset boxwidth 0.5\nset xtics noenhanced rotate by -35\n"
+      "unset key\nset xrange [0.3:",
+      double(boxes.size()) + 0.7, "]\nset xtics (", tics, ")\nplot ", plots, "\n");
   write_file_atomically(script, text);
   return run_gnuplot(script);
 }

@@ -4,7 +4,6 @@
 #include "tables.hpp"
 
 #include <dsns/core/errors.hpp>
-#include <dsns/io/atomic_file.hpp>
 
 #include <algorithm>
 #include <array>
