@@ -13,7 +13,7 @@
 #include <dsns/mesh/sphere_mask.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
 #include <dsns/sphere/fit_diffeomorphism.hpp>
-#include <dsns/stats/co_registration.hpp>
+#include <dsns/stats/matched_registration.hpp>
 #include <dsns/surface/sampled.hpp>
 
 #include <chrono>
@@ -148,13 +148,14 @@ void add_ours(std::vector<Row>& rows, const Body& a, const Disguised& b, const A
                                       MatchingBody(b.sequence, b.sphere), {}, {}, {}, progress);
   rows.push_back(judged("correspond", seed, judge, c.gamma, clock, -1));
   if (!evaluation.refine) return;
-  const DiffeomorphismFitOptions fine{{1, 2, 4, 8, 12, 16, 20, 20, 24, 24}};
-  const SphereDiffeomorphism smooth = smoothed(c.gamma, fine).gamma;
+  const MatchedRegistrationOptions usual;  // whose steps are looked at one by one
+  const SphereDiffeomorphism smooth = smoothed(c.gamma, usual.smoothing).gamma;
   rows.push_back(judged("correspond, smoothed", seed, judge, smooth, clock, -1));
   RegistrationOptions from = options;
   from.spatial.search = RotationSearch::none;
   from.spatial.start = {Mat3::Identity(), smooth};
-  from.spatial.levels = {{8, 16, 0.0, 0.5}};
+  from.spatial.levels = usual.levels;
+  from.spatial.refinement = usual.refinement;
   const SpatialResult r = register_in_space(a.surface, second, from, progress);
   rows.push_back(
       judged("correspond, refined elastically", seed, judge, r.gamma, clock, r.summary.energy_after / r.summary.norm));

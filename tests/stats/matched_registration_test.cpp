@@ -36,7 +36,7 @@ MatchedRegistrationOptions quick() {
   options.smoothing.degrees = {1, 2, 4, 8};
   options.registration.spatial_times = 2;
   options.registration.spatial.latitudes = 12;
-  options.registration.spatial.refinement = {{6, 8, 0.0, 0.5}};
+  options.refinement = {{6, 8, 0.0, 0.5}};
   options.levels = {{6, 8, 0.0, 0.5}};
   return options;
 }

@@ -8,11 +8,12 @@
 namespace dsns {
 
 struct MatchedRegistrationOptions {
-  RegistrationOptions registration;  ///< spatial.levels and spatial.start are not used
+  RegistrationOptions registration;  ///< spatial.levels, spatial.refinement and spatial.start are not used
   CorrespondOptions correspond;
   SphereLandmarks landmarks;  ///< of the correspondence; the refinement does not know them
   DiffeomorphismFitOptions smoothing{{1, 2, 4, 8, 12, 16, 20, 20, 24, 24}};  ///< of the correspondence, for derivatives
   std::vector<SpatialLevel> levels{{8, 16, 0.0, 0.5}};                       ///< from there on
+  std::vector<SpatialLevel> refinement{{10, 12, 0.0, 0.5}, {14, 16, 0.0, 0.5}, {18, 20, 0.0, 0.5}};  ///< and then
   /// Elastic energy, as a share of the first body's, up to which the refinement is believed: of bodies in one pose 0.02 to 0.05
   /// is left and correspondences get better, of different poses 0.3 and they get worse.
   double believed = 0.1;
@@ -37,6 +38,7 @@ MatchedRegistration register_matched(const F1& first, MatchingBody first_body, c
   RegistrationOptions from = options.registration;
   from.spatial.search = RotationSearch::none;
   from.spatial.levels = options.levels;
+  from.spatial.refinement = options.refinement;
   from.spatial.start.gamma = smoothed(c.gamma, options.smoothing).gamma;
   if (options.registration.spatial.search == RotationSearch::full)
     from.spatial.start.rotation =
