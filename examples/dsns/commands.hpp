@@ -58,7 +58,7 @@ struct Study {
 };
 /// The principal modes of the bodies around their mean, each as an animation of -3 to 3 standard deviations side by side.
 void modes(const Group& group, const Study& study, const Settings& settings, Report& report);
-/// Random members of the group, and how many of them are valid: no triangle turned over, time that goes forward.
+/// Random members of the group: of each its slowest clock and the share of triangles that turned over.
 void sample_bodies(const Group& group, const Study& study, const std::filesystem::path& out, const Settings& settings,
                    Report& report);
 /// Who is near whom, and what labels and a covariate explain.
