@@ -13,13 +13,15 @@ namespace dsns::program {
 
 namespace {
 
-/// Half by area of the surface, half by area of the sphere: limbs are small on the sphere, trunks large.
+/// Half by area of the surface, half by area of the sphere: limbs are small on the sphere, trunks large. The second half sees
+/// caps too: they count nowhere, but a function that is free there disturbs every projection on harmonics.
 auto sampler(const MeshSequence& sequence, const Mat3X& sphere) {
   return [&sequence, &sphere](int n, std::mt19937_64& random) {
     Mat3X s(3, n);
     s.leftCols(n / 2) = sample_faces(sequence, sphere, n / 2, random);
     MeshSequence round = sequence;
     round.frames = {sphere};
+    round.cap_faces = 0;
     s.rightCols(n - n / 2) = sample_faces(round, sphere, n - n / 2, random);
     return s;
   };
