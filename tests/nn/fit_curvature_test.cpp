@@ -4,21 +4,13 @@
 #include <dsns/geometry/curvature.hpp>
 #include <dsns/nn/fit.hpp>
 #include <dsns/surface/analytic.hpp>
+#include <dsns/surface/motion.hpp>
 
 namespace fit_curvature_test {
 
 using namespace dsns;
 
 namespace {
-
-/// A resting surface as a moving one, for the fit.
-struct Resting {
-  Ellipsoid shape;
-  template <class T>
-  Vec3<T> operator()(const Vec3<T>& s, const T&) const {
-    return shape(s);
-  }
-};
 
 double relative_rms_error(const Eigen::VectorXd& value, const Eigen::VectorXd& exact) {
   return (value - exact).norm() / exact.norm();
@@ -27,10 +19,10 @@ double relative_rms_error(const Eigen::VectorXd& value, const Eigen::VectorXd& e
 }  // namespace
 
 TEST_CASE("the curvature of a fitted network approaches the ellipsoid's as the fit goes on", "[geometry]") {
-  const Resting body{{1, 1.3, 0.8}};
+  const Ellipsoid shape{1, 1.3, 0.8};
   const Mat3X s = test::sphere_points(100);
   Eigen::VectorXd exact(s.cols());
-  for (Index i = 0; i < s.cols(); ++i) exact[i] = gaussian_curvature(body.shape, s.col(i));
+  for (Index i = 0; i < s.cols(); ++i) exact[i] = gaussian_curvature(shape, s.col(i));
   std::vector<double> errors;
   for (const int steps : {30, 300, 1500}) {
     FitOptions options;
@@ -42,7 +34,7 @@ TEST_CASE("the curvature of a fitted network approaches the ellipsoid's as the f
     options.encoding.time_frequencies = 2;
     options.batch = 256;
     options.steps = steps;
-    const FitResult fit = fit_neural_surface(body, options);
+    const FitResult fit = fit_neural_surface(resting(shape), options);
     errors.push_back(relative_rms_error(curvature(at_time(fit.surface, 0.5), s).gaussian, exact));
   }
   INFO("relative errors " << errors[0] << ", " << errors[1] << ", " << errors[2]);

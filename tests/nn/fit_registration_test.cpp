@@ -5,27 +5,16 @@
 #include <dsns/nn/fit.hpp>
 #include <dsns/surface/analytic.hpp>
 #include <dsns/surface/any_surface.hpp>
+#include <dsns/surface/motion.hpp>
 #include <dsns/surface/sampled.hpp>
 
 namespace fit_registration_test {
 
 using namespace dsns;
 
-namespace {
-
-struct Resting {
-  Ellipsoid shape;
-  template <class T>
-  Vec3<T> operator()(const Vec3<T>& s, const T&) const {
-    return shape(s);
-  }
-};
-
-}  // namespace
-
 TEST_CASE("an ellipsoid, its sampled mesh and its network register alike, to within the fit", "[elastic]") {
-  const Resting ellipsoid{{1.1, 0.7, 0.65}};
-  const AnyAnimatedSurface target(Resting{{1, 0.8, 0.6}}), exact(ellipsoid);
+  const auto ellipsoid = resting(Ellipsoid{1.1, 0.7, 0.65});
+  const AnyAnimatedSurface target(resting(Ellipsoid{1, 0.8, 0.6})), exact(ellipsoid);
   const TriangleMesh sphere = icosphere(4);
   const AnyAnimatedSurface sampled(SampledSurface(sequence_of(ellipsoid, sphere, 2), sphere.vertices));
   FitOptions fit;
