@@ -60,6 +60,7 @@ SpatialOptions spatial_options(const Body& first, const KnownWarp& truth, const 
         if (part == "smoothing") level = {level.field_degree, levels->back().surface_degree, 0, level.position_weight};
         if (part == "positions") level.position_weight = 0;
       }
+    if (part == "positions") options.finest.position_weight = 0;
   }
   return options;
 }

@@ -42,6 +42,10 @@ struct SpatialOptions {
       {1, 6, 0.05, 0.5}, {2, 6, 0.05, 0.5}, {4, 8, 0.02, 0.5}, {6, 12, 0.004, 0.5}, {8, 16, 0.0, 0.5}};
   /// Afterwards, on surfaces that are warped before they are projected; empty: no refinement.
   std::vector<SpatialLevel> refinement = {{10, 12, 0.0, 0.5}, {14, 16, 0.0, 0.5}};
+  /// In place of the last of these, for one step, where the ones before leave at most `one_body` of the squared norm: a body seen
+  /// twice is found to the last detail, two bodies have details of their own.
+  SpatialLevel finest = {18, 20, 0.0, 0.5};
+  double one_body = 1e-3;
   SpatialStart start;  ///< with RotationSearch::none; what can be no better than it is given back
   FieldAction action = FieldAction::half_density;
   int steps_per_level = 8;

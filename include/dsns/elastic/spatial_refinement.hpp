@@ -53,6 +53,11 @@ class RefinementProblem {
         position_weight_(std::sqrt(level.position_weight) * 3 / std::sqrt(area)) {}
 
   const Mat3X& points() const { return nodes_.points; }
+  double norm() const {
+    double sum = 0;
+    for (const Eigen::MatrixXd& g : targets_) sum += g.colwise().squaredNorm() * q_.weights;
+    return sum;
+  }
   const SphereQuadrature& quadrature() const { return q_; }
   /// O g(P f2(y)), one a time.
   std::vector<Eigen::MatrixXd> fields(const Mat3X& y, const Mat3& O) const {

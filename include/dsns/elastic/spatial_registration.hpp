@@ -223,21 +223,23 @@ double registered_energy(const First& first, const Second& second, const Mat3& r
 /// Refines a registration by the levels of options.refinement, on surfaces that are warped first and projected then.
 /// first, second  corresponding surfaces, e.g. StillStack or MovingStack
 /// returns  the registration with further increments; the former one where no step helps or the increments would fold
-/// accuracy of warps of 4 to 8.5 degrees, found to 1 to 2 degrees, misses 0.01 to 0.05 degrees [docs/spatial.md]
+/// accuracy of warps of 4 to 8.5 degrees, found to 1 to 2 degrees, misses 0.001 degrees [docs/spatial.md]
 template <SurfaceStack First, SurfaceStack Second>
 SpatialResult refine_registration(const First& first, const Second& second, const SpatialResult& former,
                                   const SpatialOptions& options = {}, const Progress& progress = {}) {
   std::vector<SphereVectorField> fields = former.gamma.increments();
   SpatialResult result = former;
+  bool one_body = false;
   for (std::size_t k = 0; k < options.refinement.size(); ++k) {
     report(progress, "spatial refinement", double(k) / double(options.refinement.size()));
-    const SpatialLevel& level = options.refinement[k];
+    const bool finest = one_body && k + 1 == options.refinement.size();
+    const SpatialLevel& level = finest ? options.finest : options.refinement[k];
     const detail::RefinementProblem problem(first, second, level, options);
     SphereDiffeomorphism gamma(former.gamma.rotation());
     for (const auto& v : fields) gamma.append(v);
     const SphereDisplacement begin = gamma.displacement(charts_at(problem.points()));
     detail::RefinementState p = problem.at(begin.y, begin.J, result.rotation);
-    constexpr int most_steps = 8;
+    const int most_steps = finest ? 1 : 8;
     for (int step = 0; step < most_steps; ++step) {
       const double energy = p.energy;
       p = problem.minimise(std::move(p), level.field_degree, 1, fields, result.summary.energies);
@@ -245,6 +247,7 @@ SpatialResult refine_registration(const First& first, const Second& second, cons
       if (!(left < 1 - options.tolerance) || (step + 1 >= options.refinement_steps && left > 0.3)) break;
     }
     result.rotation = p.O;
+    one_body = p.energy <= options.one_body * problem.norm();
   }
   const std::size_t before = former.gamma.increments().size(), found = fields.size();
   result.gamma = detail::certified(former.gamma.rotation(), std::move(fields), result.summary);
