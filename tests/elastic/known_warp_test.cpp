@@ -105,4 +105,59 @@ TEST_CASE("registration begins at a start that is given", "[elastic]") {
   CHECK(same.summary.steps == 0);
 }
 
+TEST_CASE("one body seen twice is found on finer fields than two bodies", "[elastic]") {
+  const LimbedBody body = some_body();
+  const KnownWarp truth = known_warp(5, 3, 5 * degree, KnownTurns::none);
+  const RegisteredSurface moved(body, truth.rotation, truth.gamma);
+  SpatialOptions options = quick();
+  options.search = RotationSearch::none;
+  options.refinement = {{6, 8, 0.0, 0.5}, {6, 8, 0.0, 0.5}};
+  options.finest = {9, 10, 0.0, 0.5};
+  const SpatialResult found = register_spatially(at_time(moved, 0.0), at_time(body, 0.0), options);
+  CHECK(found.gamma.increments().back().degree == 9);
+  options.one_body = 0;
+  const SpatialResult coarse = register_spatially(at_time(moved, 0.0), at_time(body, 0.0), options);
+  CHECK(coarse.gamma.increments().back().degree == 6);
+  const double fine = recovery(truth, found.rotation, found.gamma).missed,
+               rough = recovery(truth, coarse.rotation, coarse.gamma).missed;
+  INFO("missed by " << rough / degree << " and " << fine / degree << " degrees");
+  CHECK(fine < 0.5 * rough);
+
+  // Another body: the same fields as without.
+  options.one_body = 1e-3;
+  LimbedBody other = body;
+  other.axes = {1, 0.6, 0.9};
+  const SpatialResult apart = register_spatially(at_time(other, 0.0), at_time(body, 0.0), options);
+  CHECK(apart.gamma.increments().back().degree == 6);
+}
+
+TEST_CASE("landmarks bring their points to their places", "[elastic]") {
+  // A round body knows nothing of turns about its axis, so that landmarks alone tell; 12 degrees of a twist besides.
+  const Ellipsoid body{1, 1, 0.7};
+  const Mat3X points = fibonacci_sphere(30).points;
+  Mat3X targets = points;
+  for (Index i = 0; i < points.cols(); ++i)
+    targets.col(i) = rotation_exp(Vec3d(0, 0, 0.5 + 0.2 * points(2, i))) * points.col(i);
+  SpatialOptions options = quick();
+  options.search = RotationSearch::none;
+  const SpatialResult without = register_spatially(body, body, options);
+  options.landmarks = {points, targets, Eigen::VectorXd::Constant(30, 0.5)};
+  for (const RotationSearch search : {RotationSearch::none, RotationSearch::upright}) {
+    options.search = search;
+    const SpatialResult r = register_spatially(body, body, options);
+    INFO("missed by " << r.summary.landmarks_missed << " radians");
+    CHECK(angular_distance(without.gamma(points), targets, options.landmarks.weights).rms > 0.3);
+    CHECK(r.summary.landmarks_missed == angular_distance(r.gamma(points), targets, options.landmarks.weights).rms);
+    CHECK(r.summary.landmarks_missed < 0.02);
+    CHECK(r.summary.min_jacobian > 0);
+  }
+
+  options.landmarks.weights[3] = -1;
+  CHECK_THROWS_AS(register_spatially(body, body, options), InvalidArgument);
+  options.landmarks = {points, targets.leftCols(29), Eigen::VectorXd::Ones(30)};
+  CHECK_THROWS_AS(register_spatially(body, body, options), InvalidArgument);
+  options.landmarks = {points, 2 * targets, Eigen::VectorXd::Ones(30)};
+  CHECK_THROWS_AS(register_spatially(body, body, options), InvalidArgument);
+}
+
 }  // namespace known_warp_test

@@ -2,7 +2,7 @@
 /// One stage of spatial registration: Gauss-Newton on vector spherical harmonics. Particles y_i = gamma(s_i) start on the
 /// quadrature's nodes; each step composes exp(v) on the left, so a step costs the same however many came before.
 #include <dsns/elastic/half_density.hpp>
-#include <dsns/elastic/spatial_descent.hpp>
+#include <dsns/elastic/landmark_term.hpp>
 
 namespace dsns {
 
@@ -22,7 +22,8 @@ inline Matrix6 upper_root(const Matrix6& A) {
   return R;
 }
 
-/// The particles' state: y = gamma(s), J and O with everything that is evaluated there.
+/// The particles' state: y = gamma(s), J and O with everything that is evaluated there. Landmarks stand behind the nodes, or are left
+/// out.
 struct Particles {
   Mat3X y;
   Eigen::VectorXd J;
@@ -37,11 +38,19 @@ class SpatialProblem {
  public:
   SpatialProblem(const HalfDensityField& first, HalfDensityField second, const SphereQuadrature& q,
                  const SpatialOptions& options)
-      : target_(first(charts_at(q.points)).g), second_(std::move(second)), weights_(q.weights), options_(&options) {}
+      : target_(first(charts_at(q.points)).g),
+        second_(std::move(second)),
+        weights_(q.weights),
+        options_(&options),
+        landmarks_(options.landmarks, norm()),
+        points_(landmarks_.behind(q.points)) {}
+
+  /// The nodes, and behind them the landmarks.
+  const Mat3X& points() const { return points_; }
 
   Particles at(Mat3X y, Eigen::VectorXd J, const Mat3& O) const {
     Particles p{std::move(y), std::move(J), O, {}, 0};
-    p.field = evaluate(p.y);
+    p.field = evaluate(p.y.leftCols(weights_.size()));
     p.energy = energy(p);
     return p;
   }
@@ -80,9 +89,10 @@ class SpatialProblem {
 
   double energy(const Particles& p) const {
     const Eigen::MatrixXd moved = options_->action == FieldAction::half_density
-                                      ? Eigen::MatrixXd(p.field.g * p.J.cwiseSqrt().asDiagonal())
+                                      ? Eigen::MatrixXd(p.field.g * p.J.head(weights_.size()).cwiseSqrt().asDiagonal())
                                       : p.field.g;
-    return (target_ - rotate_blocks(p.O, moved)).colwise().squaredNorm() * weights_;
+    return (target_ - rotate_blocks(p.O, moved)).colwise().squaredNorm() * weights_ +
+           landmarks_.energy(p.y, weights_.size());
   }
 
   /// [g, g1, g2, e_x x g, e_y x g, e_z x g] of point i, components x 6.
@@ -102,10 +112,12 @@ class SpatialProblem {
   HalfDensityField second_;
   Eigen::VectorXd weights_;
   const SpatialOptions* options_;
+  LandmarkTerm landmarks_;
+  Mat3X points_;
 };
 
 inline NormalEquations SpatialProblem::linearise(const Particles& p, const ChartBatch& charts, int degree) const {
-  const Index count = harmonic_count(degree) - 1, unknowns = 2 * count + 3, n = p.y.cols();
+  const Index count = harmonic_count(degree) - 1, unknowns = 2 * count + 3, n = weights_.size();
   const Eigen::MatrixXd target = rotate_blocks(p.O.transpose(), target_);
   std::vector<Eigen::MatrixXd> matrices(std::size_t((n + chunk_size - 1) / chunk_size));
   std::vector<Eigen::VectorXd> rights(matrices.size());
@@ -147,6 +159,7 @@ inline NormalEquations SpatialProblem::linearise(const Particles& p, const Chart
     system.matrix += matrices[chunk];
     system.right += rights[chunk];
   }
+  landmarks_.add_to(system, charts, n);
   return system;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Options and results of spatial registration.
 #include <dsns/core/errors.hpp>
-#include <dsns/sphere/diffeomorphism.hpp>
+#include <dsns/sphere/landmarks.hpp>
 
 #include <functional>
 #include <string>
@@ -44,7 +44,7 @@ struct SpatialOptions {
   std::vector<SpatialLevel> refinement = {{10, 12, 0.0, 0.5}, {14, 16, 0.0, 0.5}};
   /// In place of the last of these, for one step, where the ones before leave at most `one_body` of the squared norm: a body seen
   /// twice is found to the last detail, two bodies have details of their own.
-  SpatialLevel finest = {18, 20, 0.0, 0.5};
+  SpatialLevel finest = {20, 17, 0.0, 0.5};
   double one_body = 1e-3;
   SpatialStart start;  ///< with RotationSearch::none; what can be no better than it is given back
   FieldAction action = FieldAction::half_density;
@@ -63,6 +63,7 @@ struct SpatialOptions {
   /// The part of the sphere on which the surfaces are compared, as weights from 0 to 1 at unit vectors of the first one's
   /// sphere, such as a SphereMask; empty: all of it.
   std::function<Eigen::VectorXd(const Mat3X&)> mask{};
+  SphereLandmarks landmarks{};  ///< points of the first one's sphere and where they lie on the second's
 };
 
 /// The nodes with their weights times the mask.
@@ -80,10 +81,11 @@ inline SphereQuadrature masked(SphereQuadrature q, const SpatialOptions& options
 struct SpatialSummary {
   double energy_before = 0;  ///< at the identity, or at the start if one was given
   double energy_after = 0;
-  double norm = 0;          ///< |h1|^2, to compare the energies with
-  double min_jacobian = 1;  ///< over a grid four times finer than the fields' bandwidth
+  double norm = 0;              ///< |h1|^2, to compare the energies with
+  double landmarks_missed = 0;  ///< by their images, root mean square with their weights, radians
+  double min_jacobian = 1;      ///< over a grid four times finer than the fields' bandwidth
   int steps = 0;
-  std::vector<double> energies;  ///< after every accepted step, of the level it belongs to
+  std::vector<double> energies;  ///< after every accepted step, of the level it belongs to, landmarks with it
   std::string stop;              ///< why it ended
 };
 

@@ -6,7 +6,7 @@
 /// P the projection and g the field of half_density.hpp, so that the truth has energy 0 whatever P takes away. The derivative
 /// of P(f2 o gamma) along a field v is P(df2 v(gamma)), which needs first derivatives of f2 alone.
 #include <dsns/elastic/half_density.hpp>
-#include <dsns/elastic/spatial_descent.hpp>
+#include <dsns/elastic/landmark_term.hpp>
 #include <dsns/elastic/surface_stack.hpp>
 
 #include <array>
@@ -15,7 +15,7 @@ namespace dsns {
 
 namespace detail {
 
-/// The images of the projection's nodes under gamma, the turn of the body, and what follows from them.
+/// The images of the projection's nodes under gamma, landmarks behind them or left out, the turn of the body, and what follows.
 struct RefinementState {
   Mat3X y;
   Eigen::VectorXd J;
@@ -36,8 +36,10 @@ class RefinementProblem {
     for (const HarmonicSurface& f : surfaces) area += area_densities(at_nodes(f)).dot(q_.weights);
     position_weight_ /= std::sqrt(area / double(surfaces.size()));
     for (const HarmonicSurface& f : surfaces) targets_.push_back(field(at_nodes(f)));
+    landmarks_ = LandmarkTerm(options.landmarks, norm());
+    points_ = landmarks_.behind(nodes_.points);
   }
-  /// Against fields at the nodes of quadrature(), as fields() gives them, one a time. `area` balances positions against the SRNF.
+  /// Against fields at the nodes of quadrature(), as fields() gives them, one a time, without landmarks. `area` balances positions against the SRNF.
   RefinementProblem(std::vector<Eigen::MatrixXd> targets, double area, const Second& second, const SpatialLevel& level,
                     const SpatialOptions& options)
       : second_(&second),
@@ -45,6 +47,7 @@ class RefinementProblem {
         degree_(level.surface_degree),
         heat_((-level.smoothing * harmonic_degrees(degree_) * (harmonic_degrees(degree_) + 1)).exp()),
         nodes_(projection_nodes(degree_)),
+        points_(nodes_.points),
         q_(masked(sphere_quadrature(options.latitudes), options)),
         basis_(harmonic_tangents<RowMajor>(charts_at(q_.points), degree_)),
         projection_(harmonics(nodes_.points, degree_).transpose() * nodes_.weights.asDiagonal()),
@@ -52,7 +55,8 @@ class RefinementProblem {
         srnf_weight_(std::sqrt(1 - level.position_weight)),
         position_weight_(std::sqrt(level.position_weight) * 3 / std::sqrt(area)) {}
 
-  const Mat3X& points() const { return nodes_.points; }
+  /// The projection's nodes, and behind them the landmarks.
+  const Mat3X& points() const { return points_; }
   double norm() const {
     double sum = 0;
     for (const Eigen::MatrixXd& g : targets_) sum += g.colwise().squaredNorm() * q_.weights;
@@ -69,11 +73,12 @@ class RefinementProblem {
 
   RefinementState at(Mat3X y, Eigen::VectorXd J, const Mat3& O) const {
     RefinementState p{std::move(y), std::move(J), O, {}, 0};
-    p.surfaces = projected(second_->positions(p.y));
+    p.surfaces = projected(second_->positions(p.y.leftCols(nodes_.size())));
     require(p.surfaces.size() == targets_.size(), "register_spatially: ", targets_.size(), " surfaces against ",
             p.surfaces.size(), ", give as many of both");
     for (std::size_t t = 0; t < targets_.size(); ++t)
       p.energy += (targets_[t] - rotate_blocks(O, field(at_nodes(p.surfaces[t])))).colwise().squaredNorm() * q_.weights;
+    p.energy += landmarks_.energy(p.y, nodes_.size());
     return p;
   }
 
@@ -166,18 +171,23 @@ class RefinementProblem {
   const SpatialOptions* options_;
   int degree_;
   Eigen::ArrayXd heat_;
-  SphereQuadrature nodes_, q_;
+  SphereQuadrature nodes_;
+  Mat3X points_;
+  SphereQuadrature q_;
   HarmonicTangentsOf<RowMajor> basis_;    // at q_
   Eigen::MatrixXd projection_;            // values at nodes_ to coefficients
   std::vector<Eigen::MatrixXd> targets_;  // fields of the first surfaces at q_
   double srnf_weight_ = 0, position_weight_ = 0;
+  LandmarkTerm landmarks_;
 };
 
 template <SurfaceStack Second>
 NormalEquations RefinementProblem<Second>::linearise(const RefinementState& p, const ChartBatch& charts,
                                                      int degree) const {
-  const HarmonicTangents fields = harmonic_tangents(charts, degree);
-  const std::vector<SurfaceTangents> second = second_->tangents(charts);
+  const Index n = nodes_.size();
+  const ChartBatch at{charts.s.leftCols(n), charts.e1.leftCols(n), charts.e2.leftCols(n)};
+  const HarmonicTangents fields = harmonic_tangents(at, degree);
+  const std::vector<SurfaceTangents> second = second_->tangents(at);
   std::vector<NormalEquations> of_times(second.size());
   parallel_for(static_cast<int>(second.size()), options_->threads, [&](int time) {
     const auto t = std::size_t(time);
@@ -188,6 +198,7 @@ NormalEquations RefinementProblem<Second>::linearise(const RefinementState& p, c
     sum.matrix += of_times[t].matrix;
     sum.right += of_times[t].right;
   }
+  landmarks_.add_to(sum, charts, n);
   return sum;
 }
 

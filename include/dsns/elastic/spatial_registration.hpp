@@ -7,6 +7,7 @@
 #include <dsns/core/progress.hpp>
 #include <dsns/elastic/spatial_gauss_newton.hpp>
 #include <dsns/elastic/spatial_refinement.hpp>
+#include <dsns/sphere/sphere_map.hpp>
 
 #include <span>
 
@@ -20,6 +21,7 @@ class SpatialPair {
   SpatialPair(std::span<const HarmonicSurface> first, std::span<const HarmonicSurface> second,
               const SpatialOptions& options)
       : first_(centred(first)), second_(centred(second)), options_(&options) {
+    require_landmarks(options.landmarks, "register_spatially");
     require(!first.empty() && first.size() == second.size(), "register_spatially: ", first.size(), " surfaces against ",
             second.size(), ", give as many of both, at least one");
     const SphereQuadrature q = masked(sphere_quadrature(options.latitudes), options);
@@ -75,12 +77,15 @@ inline std::vector<RotationCandidate> search_rotations(const SpatialPair& pair, 
   const HalfDensityField first = pair.field(pair.first(), level), second = pair.field(pair.second(), level);
   const Eigen::MatrixXd target = first(charts_at(q.points)).g;
   const std::vector<Mat3> grid = rotation_grid(options.rotations);
+  const LandmarkTerm landmarks(options.landmarks, target.colwise().squaredNorm() * q.weights);
   std::vector<RotationCandidate> candidates(grid.size());
   parallel_for(static_cast<int>(grid.size()), options.threads, [&](int k) {
     const Mat3& R = grid[std::size_t(k)];
     const Eigen::MatrixXd g = second(charts_at((R * q.points).colwise().normalized())).g;
     const Mat3 O = upright ? Mat3::Identity() : nearest_rotation(block_correlation(target, g, q.weights));
-    candidates[std::size_t(k)] = {R, O, (target - rotate_blocks(O, g)).colwise().squaredNorm() * q.weights};
+    candidates[std::size_t(k)] = {R, O,
+                                  (target - rotate_blocks(O, g)).colwise().squaredNorm() * q.weights +
+                                      landmarks.energy(R * landmarks.behind(q.points), q.size())};
   });
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.energy < b.energy; });
@@ -100,27 +105,40 @@ inline std::vector<RotationCandidate> distinct(const std::vector<RotationCandida
 }
 
 /// The best candidate after a few steps on a coarse grid: all are turned and shifted, the best of those bent by degree 2 and 3. The
-/// right turn of a large warp is often not among the first before that.
+/// right turn of a large warp is often not among the first before that, and many turns end in one place.
 inline RotationCandidate best_rotation(const SpatialPair& pair, const SpatialOptions& options) {
-  std::vector<RotationCandidate> candidates = distinct(search_rotations(pair, options), options.refined);
   const SphereQuadrature q = masked(sphere_quadrature(12), options);
   const SpatialProblem problem = pair.problem(options.levels.front(), q);
-  std::vector<std::pair<RotationCandidate, Particles>> found;
+  std::vector<std::pair<RotationCandidate, Particles>> shifted, bent;
   const auto descend_to = [&](Particles p, int degree) {
     std::vector<SphereVectorField> fields;
     std::vector<double> energies;
     return problem.minimise(std::move(p), degree, 8, fields, energies);
   };
-  for (const auto& candidate : candidates)
-    found.emplace_back(candidate, descend_to(problem.at((candidate.R * q.points).colwise().normalized(),
-                                                        Eigen::VectorXd::Ones(q.size()), candidate.O),
-                                             1));
+  const Mat3X& points = problem.points();
+  for (const auto& candidate : distinct(search_rotations(pair, options), options.refined))
+    shifted.emplace_back(candidate, descend_to(problem.at((candidate.R * points).colwise().normalized(),
+                                                          Eigen::VectorXd::Ones(points.cols()), candidate.O),
+                                               1));
   const auto lower = [](const auto& a, const auto& b) { return a.second.energy < b.second.energy; };
-  std::stable_sort(found.begin(), found.end(), lower);
-  found.resize(std::min(found.size(), std::size_t(std::max(1, options.bent))));
-  for (auto& [candidate, particles] : found)
+  std::stable_sort(shifted.begin(), shifted.end(), lower);
+  constexpr double one_place = 0.3;  // radians rms
+  for (const auto& found : shifted) {
+    if (int(bent.size()) >= std::max(1, options.bent)) break;
+    const Mat3X y = found.second.y.leftCols(q.size());
+    const auto same = [&](const auto& b) {
+      return angular_distance(b.second.y.leftCols(q.size()), y, q.weights).rms < one_place;
+    };
+    if (std::none_of(bent.begin(), bent.end(), same)) bent.push_back(found);
+  }
+  for (auto& [candidate, particles] : bent)
     for (const int degree : {2, 3}) particles = descend_to(std::move(particles), degree);
-  return std::min_element(found.begin(), found.end(), lower)->first;
+  return std::min_element(bent.begin(), bent.end(), lower)->first;
+}
+
+inline double missed(const SphereLandmarks& landmarks, const SphereDiffeomorphism& gamma) {
+  return landmarks.size() == 0 ? 0
+                               : angular_distance(gamma(landmarks.points), landmarks.targets, landmarks.weights).rms;
 }
 
 /// gamma from its parts, without the last increments for which the fine grid shows a fold; says in `summary` if any were dropped.
@@ -159,7 +177,8 @@ inline SpatialResult register_harmonic(std::span<const HarmonicSurface> first, s
     start = {turn.O, SphereDiffeomorphism(turn.R)};
   }
   std::vector<SphereVectorField> fields = start.gamma.increments();
-  const SphereDisplacement begin = start.gamma.displacement(charts_at(q.points));
+  const Mat3X points = detail::LandmarkTerm(options.landmarks, 0).behind(q.points);
+  const SphereDisplacement begin = start.gamma.displacement(charts_at(points));
   Mat3X y = begin.y;
   Eigen::VectorXd J = begin.J;
 
@@ -181,20 +200,18 @@ inline SpatialResult register_harmonic(std::span<const HarmonicSurface> first, s
   result.rotation = O;
 
   SpatialLevel level = options.levels.back();
-  const auto energies = [&] {
+  const auto energies = [&](const Mat3X& at) {
     const detail::SpatialProblem problem = pair.problem(level, q);
-    const SphereDisplacement end = result.gamma.displacement(charts_at(q.points));
+    const SphereDisplacement end = result.gamma.displacement(charts_at(at));
     summary.norm = problem.norm();
-    const SphereDisplacement before = unmoved.gamma.displacement(charts_at(q.points));
+    const SphereDisplacement before = unmoved.gamma.displacement(charts_at(at));
     summary.energy_before = problem.at(before.y, before.J, unmoved.rotation).energy;
     summary.energy_after = problem.at(end.y, end.J, O).energy;
   };
-  energies();
+  energies(points);
   const bool better = summary.energy_after <= summary.energy_before;
-  if (level.position_weight != 0) {
-    level.position_weight = 0;
-    energies();
-  }
+  level.position_weight = 0;
+  energies(q.points);
   summary.steps = static_cast<int>(result.gamma.increments().size() - start.gamma.increments().size());
   if (!better) {
     result = {unmoved.rotation, unmoved.gamma, summary};
@@ -203,6 +220,7 @@ inline SpatialResult register_harmonic(std::span<const HarmonicSurface> first, s
     result.summary.steps = 0;
     result.summary.stop = "nothing better than the start was found";
   }
+  result.summary.landmarks_missed = detail::missed(options.landmarks, result.gamma);
   report(progress, "spatial registration", 1);
   return result;
 }
@@ -215,7 +233,9 @@ double registered_energy(const First& first, const Second& second, const Mat3& r
   require(!options.levels.empty() || !options.refinement.empty(), "registered_energy: no levels, give at least one");
   SpatialLevel level = options.levels.empty() ? options.refinement.back() : options.levels.back();
   level.position_weight = 0;
-  const detail::RefinementProblem problem(first, second, level, options);
+  SpatialOptions elastic = options;
+  elastic.landmarks = {};
+  const detail::RefinementProblem problem(first, second, level, elastic);
   SphereDisplacement end = gamma.displacement(charts_at(problem.points()));
   return problem.at(std::move(end.y), std::move(end.J), rotation).energy;
 }
@@ -257,6 +277,7 @@ SpatialResult refine_registration(const First& first, const Second& second, cons
     result.summary.stop = stop;
   }
   result.summary.steps += static_cast<int>(result.gamma.increments().size() - before);
+  result.summary.landmarks_missed = detail::missed(options.landmarks, result.gamma);
   if (!options.refinement.empty())
     result.summary.energy_after = registered_energy(first, second, result.rotation, result.gamma, options);
   report(progress, "spatial refinement", 1);
@@ -271,8 +292,8 @@ inline int surface_degree(const SpatialOptions& options) {
 }
 
 /// Registers one surface to another, of any kind, and refines.
-/// accuracy warps of degree 6 up to 10 degrees, with any turns of body and sphere, are found again to 0.1 degrees on bodies of
-///          several limbs; of warps of degree 3 and 13 to 24 degrees 18 of 20 to 0.15 [examples/known_warps]
+/// accuracy warps of degree 6 up to 10 degrees, with any turns of body and sphere, are found again to 0.04 degrees on bodies of
+///          several limbs, warps of degree 3 and 13 to 24 degrees to 0.14 [examples/known_warps]
 template <Surface S1, Surface S2>
 SpatialResult register_spatially(const S1& first, const S2& second, const SpatialOptions& options = {},
                                  const Progress& progress = {}) {

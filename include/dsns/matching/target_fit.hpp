@@ -12,6 +12,7 @@
 /// and lets every vertex settle in the full energy.
 #include <dsns/core/progress.hpp>
 #include <dsns/matching/target_problem.hpp>
+#include <dsns/sphere/landmarks.hpp>
 
 #include <optional>
 
@@ -36,12 +37,6 @@ struct TargetFitOptions {
   double barrier_threshold = 0.1;  ///< Jacobians above it are free
   double barrier = 1e-3;           ///< weight
   Eigen::VectorXd weights{};       ///< of the vertices' targets, a factor each; empty: all 1
-};
-
-/// Points of the sphere whose images are known: landmarks, vertices of a mesh with known partners.
-struct SphereLandmarks {
-  Mat3X points{3, 0}, targets{3, 0};  ///< unit, 3 x n
-  Eigen::VectorXd weights{};          ///< n; 1 is as much as the targets of all vertices together
 };
 
 struct TargetFitSummary {
@@ -99,10 +94,7 @@ TargetFit fit_to_targets(const G& start, const F& targets, const TargetFitOption
   const Index n = sphere.vertices.cols();
   require(options.weights.size() == 0 || (options.weights.size() == n && !(options.weights.array() < 0).any()),
           "fit_to_targets: ", options.weights.size(), " weights for ", n, " vertices, or negative ones");
-  require(landmarks.weights.size() == landmarks.points.cols() && !(landmarks.weights.array() < 0).any(),
-          "fit_to_targets: ", landmarks.weights.size(), " weights for ", landmarks.points.cols(),
-          " landmarks, or negative ones");
-  detail::require_targets(landmarks.targets, landmarks.points.cols(), "landmarks");
+  require_landmarks(landmarks, "fit_to_targets");
 
   detail::Observations dense{sphere.vertices, {}, vertex_areas(sphere.vertices, sphere.faces)};
   dense.weights /= dense.weights.sum();

@@ -88,6 +88,7 @@ class SpatialGroup {
       : load_(&load), chosen_(&chosen), options_(&options) {
     const RegistrationOptions& r = options.registration;
     require(!r.spatial.levels.empty(), "register_group: no levels, give at least one");
+    require(r.spatial.landmarks.size() == 0, "register_group: landmarks belong to one pair of bodies, give none");
     level_ = r.spatial.refinement.empty() ? r.spatial.levels.back() : r.spatial.refinement.back();
   }
 

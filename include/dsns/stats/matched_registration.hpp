@@ -10,7 +10,7 @@ namespace dsns {
 struct MatchedRegistrationOptions {
   RegistrationOptions registration;  ///< spatial.levels, spatial.refinement and spatial.start are not used
   CorrespondOptions correspond;
-  SphereLandmarks landmarks;  ///< of the correspondence; the refinement does not know them
+  SphereLandmarks landmarks;  ///< of the correspondence, and of the refinement
   DiffeomorphismFitOptions smoothing{{1, 2, 4, 8, 12, 16, 20, 20, 24, 24}};  ///< of the correspondence, for derivatives
   std::vector<SpatialLevel> levels{{8, 16, 0.0, 0.5}};                       ///< from there on
   std::vector<SpatialLevel> refinement{{10, 12, 0.0, 0.5}, {14, 16, 0.0, 0.5}, {18, 20, 0.0, 0.5}};  ///< and then
@@ -39,6 +39,7 @@ MatchedRegistration register_matched(const F1& first, MatchingBody first_body, c
   from.spatial.search = RotationSearch::none;
   from.spatial.levels = options.levels;
   from.spatial.refinement = options.refinement;
+  from.spatial.landmarks = options.landmarks;
   from.spatial.start.gamma = smoothed(c.gamma, options.smoothing).gamma;
   if (options.registration.spatial.search == RotationSearch::full)
     from.spatial.start.rotation =

@@ -13,7 +13,7 @@
 namespace dsns {
 
 struct SymmetricOptions {
-  RegistrationOptions registration;                            ///< its mask is that of the first body
+  RegistrationOptions registration;                            ///< its mask and landmarks are seen from the first body
   std::function<Eigen::VectorXd(const Mat3X&)> second_mask{};  ///< of the second, for the way back
   int views = 1;             ///< ways there and back; all but the first through a warp of both spheres
   int warp_degree = 3;       ///< of the fields of those warps
@@ -39,6 +39,9 @@ SpatialResult register_through(const SphereDiffeomorphism& warp, const F1& first
                                RegistrationOptions options, const Progress& progress) {
   if (options.spatial.mask)
     options.spatial.mask = [mask = options.spatial.mask, warp](const Mat3X& s) { return mask(warp(s)); };
+  SphereLandmarks& landmarks = options.spatial.landmarks;
+  landmarks.points = warp.inverse(landmarks.points);
+  landmarks.targets = warp.inverse(landmarks.targets);
   return register_in_space(RegisteredSurface(first, Mat3::Identity(), warp),
                            RegisteredSurface(second, Mat3::Identity(), warp), options, progress);
 }
@@ -88,6 +91,7 @@ void judge(const F1& first, const F2& second, const RegistrationOptions& options
                                                   MovingStack<F2, TimeWarp>{second, clock, times, threads},
                                                   result.rotation, result.gamma, options.spatial);
   result.summary.min_jacobian = certify(result.gamma).min_jacobian;
+  result.summary.landmarks_missed = missed(options.spatial.landmarks, result.gamma);
 }
 
 }  // namespace detail
@@ -102,6 +106,7 @@ SymmetricRegistration register_symmetrically(const F1& first, const F2& second, 
   require(options.views >= 1, "register_symmetrically: ", options.views, " views, give at least one");
   RegistrationOptions backward = options.registration;
   backward.spatial.mask = options.second_mask;
+  backward.spatial.landmarks = changed_over(options.registration.spatial.landmarks);
   const SphereQuadrature q = sphere_quadrature(28);
   SymmetricRegistration out;
   std::vector<detail::SeenMap> maps;  // as ways there, of both ways in turn
