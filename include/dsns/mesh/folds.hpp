@@ -18,7 +18,7 @@ struct FoldOptions {
 };
 
 /// Shares of the area of meshes that have these triangles. Neither changes with the place, the turn or the size of a mesh.
-/// accuracy closed forms of a hinge and of a pyramid [mesh/folds_test]
+/// accuracy closed forms of a hinge and of a fan [mesh/folds_test]
 class FoldedShare {
  public:
   explicit FoldedShare(Faces faces, const FoldOptions& options = {}) : faces_(std::move(faces)), options_(options) {
