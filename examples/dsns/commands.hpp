@@ -6,6 +6,7 @@
 #include <dsns/stats/principal_modes.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,9 +49,14 @@ struct MeanOutputs {
 };
 void mean(const Group& group, const MeanOutputs& out, const Settings& settings, Report& report);
 struct Study {
-  MotionPart part = MotionPart::all;  ///< of the motions, that is compared
-  int modes = 3;                      ///< that are written and sampled
+  std::optional<MotionPart> part =
+      MotionPart::all;   ///< that is compared; none: the bodies, whatever they do (distances alone)
+  int eigenvalues = 60;  ///< of each body that are compared, at most a tenth of its vertices
+  int modes = 3;         ///< that are written and sampled
   int samples = 20;
+  double spread = 1;  ///< of the samples, standard deviations
+  std::optional<double>
+      folded;  ///< share of the area that samples may fold; none: as the median member, see ValidityBounds
   std::vector<std::string> labels;  ///< one a file named, those left out among them, or none; likewise below
   std::vector<double> covariate;
   std::filesystem::path out;  ///< folder, or empty; likewise below
@@ -58,7 +64,8 @@ struct Study {
 };
 /// The principal modes of the bodies around their mean, each as an animation of -3 to 3 standard deviations side by side.
 void modes(const Group& group, const Study& study, const Settings& settings, Report& report);
-/// Random members of the group: of each its slowest clock and the share of triangles that turned over.
+/// Random members of the group that are valid: time goes forward, and no more is torn than in the members. Writes those found and
+/// then throws where they are fewer than wanted.
 void sample_bodies(const Group& group, const Study& study, const std::filesystem::path& out, const Settings& settings,
                    Report& report);
 /// Who is near whom, and what labels and a covariate explain.

@@ -9,6 +9,7 @@
 #include <dsns/stats/principal_modes.hpp>
 
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace dsns::program {
@@ -107,6 +108,20 @@ Way field_way(const Body& a, const Body& b, const MovingRegistration& r, const E
   return way;
 }
 
+/// Where the ends stand in different poses the steps between are thinner and shorter.
+std::vector<double> areas_kept(const Way& way, const Ends& ends, const Faces& faces) {
+  const int steps = static_cast<int>(way.size());
+  std::vector<double> kept(way.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k < ends.first.size(); ++k) {
+    const double first = area({ends.first[k], faces}), last = area({ends.second[k], faces});
+    for (int j = 0; j < steps; ++j) {
+      double& least = kept[std::size_t(j)];
+      least = std::min(least, area({way[std::size_t(j)][k], faces}) / mix(first, last, fraction(j, steps)));
+    }
+  }
+  return kept;
+}
+
 }  // namespace
 
 void geodesic(const Body& a, const Body& b, const GeodesicOptions& asked, const Settings& settings, Report& report) {
@@ -136,6 +151,9 @@ void geodesic(const Body& a, const Body& b, const GeodesicOptions& asked, const 
   const Ends ends = ends_at(a.sphere.vertices, a, b, r, frames);
   const Way way = asked.path == GeodesicPath::components ? component_way(path, pca, ends, steps)
                                                          : field_way(a, b, r, ends, asked, settings, report);
+  report.figure(
+      "area_kept", "area of each step, of what the ends' areas mix to, smallest over the frames",
+      areas_kept(way, ends, a.sphere.faces.leftCols(a.sphere.faces.cols() - a.normalized.sequence.cap_faces)));
   const Mat3X colors = place_colors(a, a.sphere.vertices);
   const Mat3X way_a = relative_trajectory(a.normalized, {}, frames);
   const Mat3X way_b = r.spatial.rotation * relative_trajectory(b.normalized, r.temporal.warp, frames);

@@ -80,8 +80,7 @@ void write_fitted(const std::filesystem::path& path, const BodiesMean& mean, con
   body.normalized.sequence.duration = mean.duration;
   body.normalized.scale = mean.scale;
   body.normalized.trajectory = mean.scale * mean.way;
-  body.sphere = mean.moving.sphere;
-  body.surface = AnyAnimatedSurface(mean.moving.surface(settings.frames));
+  body.surface = mean.surface();
   Settings fast = settings;
   fast.preset = Preset::fast;
   report.say("A surface fitted to the mean:");
@@ -92,10 +91,18 @@ void write_fitted(const std::filesystem::path& path, const BodiesMean& mean, con
 
 }  // namespace
 
-Mat3X BodiesMean::colors() const {
-  const SphereDiffeomorphism& gamma = moving.group.members[moving.group.chosen.member].spatial.gamma;
-  return place_colors(chosen, gamma(moving.sphere.vertices));
+const SphereDiffeomorphism& BodiesMean::of_chosen() const {
+  return moving.group.members[moving.group.chosen.member].spatial.gamma;
 }
+
+AnyAnimatedSurface BodiesMean::surface() const {
+  MeshSequence sequence;
+  sequence.faces = faces();
+  sequence.frames = moving.frames(static_cast<int>(way.cols()));
+  return AnyAnimatedSurface(SampledSurface(sequence, chosen.sphere.vertices));
+}
+
+Mat3X BodiesMean::colors() const { return place_colors(chosen, of_chosen()(moving.sphere.vertices)); }
 
 MeshSequence BodiesMean::animation(const Eigen::MatrixXd& points, const std::string& name) const {
   return denormalize(moving.frames(points, static_cast<int>(way.cols())), faces(), way, scale, duration, name);
@@ -165,12 +172,12 @@ void mean(const Group& group, const MeanOutputs& out, const Settings& settings, 
   if (!out.own.empty()) {
     // On the first one's triangles, as points of its source: a body that was kept does not know its source's mesh any more.
     const Body first = read_body(group.members().front().source, settings, {}).body;
-    const Mat3X places = mean.moving.group.members.front().spatial.gamma.inverse(first.sphere.vertices);
-    write_on_own_mesh(
-        out.own, first,
-        denormalize(frames_of(AnyAnimatedSurface(mean.moving.surface(settings.frames)), places, settings.frames),
-                    first.sphere.faces, mean.way, mean.scale, mean.duration, "mean"),
-        settings);
+    const Mat3X places =
+        mean.of_chosen()(mean.moving.group.members.front().spatial.gamma.inverse(first.sphere.vertices));
+    write_on_own_mesh(out.own, first,
+                      denormalize(frames_of(mean.surface(), places, settings.frames), first.sphere.faces, mean.way,
+                                  mean.scale, mean.duration, "mean"),
+                      settings);
     report.wrote("own_mesh", out.own);
   }
   if (!out.fitted.empty()) write_fitted(out.fitted, mean, settings, report);

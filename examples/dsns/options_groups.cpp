@@ -18,14 +18,14 @@ void CommandLine::add_groups() {
   add_own_mesh(mean_command);
   about_groups(mean_command, settings);
 
-  const auto add_study = [&](CLI::App* sub) {
+  using Parts = std::map<std::string, std::optional<MotionPart>>;
+  const Parts parts{
+      {"all", MotionPart::all}, {"start", MotionPart::start}, {"shape", MotionPart::shape}, {"pace", MotionPart::pace}};
+  const std::string of_parts =
+      "what is compared: start: the first pose; shape: how it changes; pace: when; all: these together";
+  const auto add_study = [&](CLI::App* sub, const Parts& choices, const std::string& what) {
     sub->add_option("FILES", sources, "three animations or more")->required()->expected(3, 1000);
-    add_choice(sub, "--part", study.part,
-               {{"all", dsns::MotionPart::all},
-                {"start", dsns::MotionPart::start},
-                {"shape", dsns::MotionPart::shape},
-                {"pace", dsns::MotionPart::pace}},
-               "what is compared: start: the first pose; shape: how it changes; pace: when; all: these together");
+    add_choice(sub, "--part", study.part, choices, what);
     about_groups(sub, settings);
   };
   const auto add_modes = [&](CLI::App* sub, const std::string& what) {
@@ -41,15 +41,22 @@ void CommandLine::add_groups() {
   modes_command->add_option("-o,--output", out, "folder for an animation of each mode");
   add_modes(modes_command, "modes that are written");
   add_csv(modes_command);
-  add_study(modes_command);
+  add_study(modes_command, parts, of_parts);
 
-  CLI::App* sample_command = command("sample", "random new members of a group of animations", [&] {
+  CLI::App* sample_command = command("sample", "random new members of a group of animations, all of them valid", [&] {
     sample_bodies(Group(sources, settings, report, 3), study, out, settings, report);
   });
   sample_command->add_option("-o,--output", out, "write them to this GLB, side by side");
   sample_command->add_option("--count", study.samples, "how many")->capture_default_str()->check(CLI::Range(1, 1000));
   add_modes(sample_command, "modes that they vary along");
-  add_study(sample_command);
+  sample_command->add_option("--spread", study.spread, "standard deviations of the samples, of the animations'")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-3, 1e3));
+  sample_command
+      ->add_option("--folded", study.folded,
+                   "share of the area that may fold; else as much as in the median animation, and 0.002 more")
+      ->check(CLI::Range(0.0, 1.0));
+  add_study(sample_command, parts, of_parts);
 
   CLI::App* distances_command = command("distances", "who is near whom, and what labels or a number explain", [&] {
     check_output(study.csv.string(), "");
@@ -60,8 +67,15 @@ void CommandLine::add_groups() {
   distances_command
       ->add_option("--covariate", study.covariate, "one number for each animation named, with commas between")
       ->delimiter(',');
+  distances_command
+      ->add_option("--eigenvalues", study.eigenvalues,
+                   "of --part body, so many of each; at most a tenth of the vertices")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
   add_csv(distances_command);
-  add_study(distances_command);
+  Parts and_bodies = parts;
+  and_bodies["body"] = std::nullopt;
+  add_study(distances_command, and_bodies, of_parts + "; body: the bodies, whatever they do (Shape-DNA)");
 
   CLI::App* demo_command = command("demo", "the whole chain; without files, on three bodies that it makes",
                                    [&] { demo(sources, out.empty() ? "demo" : out, settings, report); });

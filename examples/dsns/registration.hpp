@@ -35,6 +35,11 @@ struct BodiesMean {
   double scale = 0, duration = 0;
 
   const Faces& faces() const { return moving.sphere.faces; }
+  /// From the mean's sphere to that of the chosen member.
+  const SphereDiffeomorphism& of_chosen() const;
+  /// On the sphere of the chosen member, which its triangles cover once; moved to the mean's sphere some may turn over where the
+  /// map is steep.
+  AnyAnimatedSurface surface() const;
   /// A colour for each vertex: where it lies on the chosen member.
   Mat3X colors() const;
   /// Points of a curve in the mean's components, as an animation of the mean's size and way.

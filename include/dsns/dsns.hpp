@@ -1,6 +1,6 @@
 #pragma once
 /// Everything that needs Eigen alone. Apart are <dsns/io/gltf.hpp>, which needs tinygltf, and
-/// <dsns/matching/correspond.hpp> and <dsns/stats/matched_registration.hpp>, which need Spectra.
+/// <dsns/matching/correspond.hpp>, <dsns/matching/shape_dna.hpp> and <dsns/stats/matched_registration.hpp>, which need Spectra.
 #include <dsns/elastic/geodesic.hpp>
 #include <dsns/elastic/gradient_registration.hpp>
 #include <dsns/elastic/known_warp.hpp>
@@ -41,6 +41,7 @@
 #include <dsns/stats/moving_mean.hpp>
 #include <dsns/stats/principal_modes.hpp>
 #include <dsns/stats/symmetric_registration.hpp>
+#include <dsns/stats/valid_samples.hpp>
 #include <dsns/surface/analytic.hpp>
 #include <dsns/surface/any_surface.hpp>
 #include <dsns/surface/motion.hpp>

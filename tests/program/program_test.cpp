@@ -270,8 +270,9 @@ TEST_CASE("a group has modes, new members and distances; a broken file is left o
   }
   const std::string quick = " --frames 8 --threads 2 --json " + quoted(file("r.json"));
 
-  const Run modes = run(folder.path(), "modes" + files + quick + " --modes 2 -o " + quoted(file("modes")) + " --csv " +
-                                           quoted(file("m.csv")));
+  const std::string kept_here = quick + " --work " + quoted(file("kept"));  // registered once
+  const Run modes = run(folder.path(), "modes" + files + kept_here + " --modes 2 -o " + quoted(file("modes")) +
+                                           " --csv " + quoted(file("m.csv")));
   INFO(modes.out << modes.err);
   REQUIRE(modes.status == 0);
   const std::string json = read(file("r.json"));
@@ -283,15 +284,19 @@ TEST_CASE("a group has modes, new members and distances; a broken file is left o
   CHECK(std::filesystem::exists(file("modes") / "mode_2.glb"));
   CHECK_FALSE(std::filesystem::exists(file("modes") / "mode_3.glb"));
 
-  const Run sample =
-      run(folder.path(), "sample" + files + quick + " --count 3 --modes 2 --part shape -o " + quoted(file("s.glb")));
+  const Run sample = run(
+      folder.path(), "sample" + files + kept_here + " --count 3 --modes 2 --part shape -o " + quoted(file("s.glb")));
   INFO(sample.out << sample.err);
   REQUIRE(sample.status == 0);
   CHECK(read_gltf(file("s.glb"), {"", 8}).sequence.vertex_count() == 3 * icosphere(2).vertices.cols());
-  CHECK(sample.out.find("turned over against the mean") != std::string::npos);
+  CHECK(number_after(read(file("r.json")), "sample_valid") == 3);
+  const Run torn = run(folder.path(), "sample" + files + kept_here + " --count 3 --part start --spread 300 --folded 0");
+  CHECK(torn.status == 1);
+  CHECK(torn.err.find("--spread") != std::string::npos);
+  CHECK(number_after(read(file("r.json")), "sample_draws") == 60);
 
   const Run distances =
-      run(folder.path(), "distances" + files + quick +
+      run(folder.path(), "distances" + files + kept_here +
                              " --part start --labels thin,thin,thick,thick --covariate 1,1,1.3,1.3 --csv " +
                              quoted(file("d.csv")));
   INFO(distances.out << distances.err);
@@ -303,6 +308,15 @@ TEST_CASE("a group has modes, new members and distances; a broken file is left o
   CHECK(number_after(group, "explained") > 0.9);
   CHECK(count(read(file("d.csv")), "\n") == 5);
   check_refused(run(folder.path(), "distances" + files + " --frames 8 --labels thin,thick"), "2 labels for 4");
+  const Run bodies =
+      run(folder.path(), "distances" + files + kept_here + " --part body --labels thin,thin,thick,thick");
+  INFO(bodies.out << bodies.err);
+  if (bodies.status == 0) {
+    CHECK(number_after(read(file("r.json")), "accuracy") == 1);
+    CHECK(number_after(read(file("r.json")), "eigenvalues") == 16);  // one for ten vertices
+  } else {
+    CHECK(bodies.err.find("Spectra") != std::string::npos);
+  }
 
   std::ofstream(file("broken.glb")) << "no mesh";
   const std::string with_broken =

@@ -33,6 +33,8 @@ struct MovingMean {
     return frames(integrate_srvf(curves.start, curves.q, time_grid()), count);
   }
   /// The mean as a function of place and time, through so many frames.
+  /// throws  UnusableMesh where the sphere's triangles do not cover it once: where a map to the template is steeper than they are
+  ///         fine; on the template's sphere they do
   SampledSurface surface(int count) const {
     MeshSequence sequence;
     sequence.faces = sphere.faces;
