@@ -33,6 +33,12 @@ struct Inverted {
   }
 };
 
+/// Resolves a surface of smooth_surfaces.hpp to 1e-9, the sharpest ripples to 1e-7.
+const SphereQuadrature& resolving(const std::string& name) {
+  static const SphereQuadrature smooth = sphere_quadrature(90), rippled = sphere_quadrature(160);
+  return name == "bumpier sphere" ? rippled : smooth;
+}
+
 }  // namespace
 
 TEST_CASE("area, volume, centroid and total curvature of a spheroid are the closed forms", "[geometry]") {
@@ -69,9 +75,9 @@ TEST_CASE("a sheared ball keeps its volume, and its centroid is a moment of the 
 }
 
 TEST_CASE("Gauss-Bonnet and the divergence theorem hold for every surface", "[law]") {
-  const SphereQuadrature q = sphere_quadrature(160);  // resolves the sharpest ripples to 1e-7
   test::visit_smooth_surfaces([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
+    const SphereQuadrature& q = resolving(name);
     const SurfaceMeasures m = measure(surface, q);
     CHECK(m.total_curvature == Approx(4 * pi).epsilon(1e-6));
     CHECK(m.volume > 0);
@@ -105,9 +111,9 @@ TEST_CASE("the Willmore energy does not change under inversion", "[law]") {
 TEST_CASE("measures do not change under rotation and reparametrisation", "[law]") {
   const Mat3 O = rotation_exp(Vec3d(0.7, -0.2, 0.4));
   const SphereDiffeomorphism gamma = random_diffeomorphism(6, 3, 0.08);
-  const SphereQuadrature q = sphere_quadrature(160);
   test::visit_formulas([&](const std::string& name, const test::AnySurface& surface) {
     INFO(name);
+    const SphereQuadrature& q = resolving(name);
     const SurfaceMeasures a = measure(surface, q), b = measure(rotated(reparametrized(surface, gamma), O), q);
     CHECK(b.area == Approx(a.area).epsilon(1e-9));
     CHECK(b.volume == Approx(a.volume).epsilon(1e-9));
