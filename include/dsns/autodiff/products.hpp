@@ -179,6 +179,17 @@ StridedView<typename M::Scalar> strided(const M& m) {
                        : StridedView<typename M::Scalar>{m.data(), m.innerStride(), m.outerStride()};
 }
 
+/// The same matrix as one of two types, for which Eigen's product is compiled once.
+template <class M>
+auto plain_view(M& m) {
+  using T = std::remove_const_t<std::remove_pointer_t<decltype(m.data())>>;
+  using Plain = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic,
+                              std::remove_const_t<M>::IsRowMajor ? Eigen::RowMajor : Eigen::ColMajor>;
+  using Entries = std::conditional_t<std::is_const_v<M>, const Plain, Plain>;
+  return Eigen::Map<Entries, 0, Eigen::OuterStride<>>(m.data(), m.rows(), m.cols(),
+                                                      Eigen::OuterStride<>(m.outerStride()));
+}
+
 template <class T>
 inline constexpr bool has_vector_products = (std::is_same_v<T, float> || std::is_same_v<T, double>)&&vector_bytes >= 32;
 
@@ -201,6 +212,8 @@ void set_product(C&& c, const A& a, const B& b) {
       c.setZero();
     else
       detail::multiply<false>(c, a, b);
+  } else if constexpr (std::is_floating_point_v<typename A::Scalar>) {
+    detail::plain_view(c).noalias() = detail::plain_view(a) * detail::plain_view(b);
   } else {
     c.noalias() = a * b;
   }
@@ -212,6 +225,8 @@ void add_product(C&& c, const A& a, const B& b) {
   assert(c.rows() == a.rows() && c.cols() == b.cols() && a.cols() == b.rows());
   if constexpr (detail::has_vector_products<typename A::Scalar>)
     detail::multiply<true>(c, a, b);
+  else if constexpr (std::is_floating_point_v<typename A::Scalar>)
+    detail::plain_view(c).noalias() += detail::plain_view(a) * detail::plain_view(b);
   else
     c.noalias() += a * b;
 }

@@ -84,8 +84,14 @@ class Soap {
         out_of_bases(block);
         parameters -= T(rate) * (T(options_.weight_decay) * parameters + block.direction);
       }
-      if (block.left.exists()) follow(block, block.left, g);
-      if (block.right.exists()) follow(block, block.right, g.transpose());
+      if (block.left.exists()) {
+        follow(block.left, g);
+        turn(block, block.left);
+      }
+      if (block.right.exists()) {
+        follow(block.right, g.transpose());
+        turn(block, block.right);
+      }
     });
   }
 
@@ -147,16 +153,20 @@ class Soap {
     law(flat(moment(b)), flat(square(b)), flat(b.direction));
   }
 
-  /// Takes a gradient, the factor's side first, into the factor, and turns the block's moments where the basis is due.
+  /// Takes a gradient, the factor's side first, into the factor.
   template <class G>
-  void follow(Block& block, const Factor& f, const G& g) {
+  void follow(const Factor& f, const G& g) {
     auto average = factor(f);
     average *= T(options_.factor_decay);
     average.template selfadjointView<Eigen::Lower>().rankUpdate(g, T(1 - options_.factor_decay));
-    const auto turn = std::int64_t(f.number) * options_.refresh / factor_count_;
+  }
+
+  /// Turns the block's moments where the basis is due.
+  void turn(Block& block, const Factor& f) {
+    const auto due = std::int64_t(f.number) * options_.refresh / factor_count_;
     if (state_.steps == 1) {
-      basis(f) = Eigen::SelfAdjointEigenSolver<Matrix>(average).eigenvectors().rowwise().reverse();
-    } else if ((state_.steps - turn) % options_.refresh == 0) {
+      basis(f) = Eigen::SelfAdjointEigenSolver<Matrix>(factor(f)).eigenvectors().rowwise().reverse();
+    } else if ((state_.steps - due) % options_.refresh == 0) {
       const Matrix rotation = refresh_basis(f);
       auto m = moment(block), v = square(block);
       if (&f == &block.left) {
