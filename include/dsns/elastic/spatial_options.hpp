@@ -81,12 +81,12 @@ inline SphereQuadrature masked(SphereQuadrature q, const SpatialOptions& options
 struct SpatialSummary {
   double energy_before = 0;  ///< at the identity, or at the start if one was given
   double energy_after = 0;
-  double norm = 0;              ///< |h1|^2, to compare the energies with
-  double landmarks_missed = 0;  ///< by their images, root mean square with their weights, radians
-  double min_jacobian = 1;      ///< over a grid four times finer than the fields' bandwidth
+  double norm = 0;          ///< |h1|^2, to compare the energies with
+  double min_jacobian = 1;  ///< over a grid four times finer than the fields' bandwidth
   int steps = 0;
   std::vector<double> energies;  ///< after every accepted step, of the level it belongs to, landmarks with it
   std::string stop;              ///< why it ended
+  double landmarks_missed = 0;   ///< by their images, root mean square with their weights, radians
 };
 
 /// F2 is brought to F1 by O F2(gamma(s)).
