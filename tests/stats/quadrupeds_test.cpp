@@ -3,7 +3,7 @@
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/io/frames.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
-#include <dsns/stats/co_registration.hpp>
+#include <dsns/stats/symmetric_registration.hpp>
 #include <dsns/surface/any_surface.hpp>
 #include <dsns/surface/sampled.hpp>
 
@@ -61,26 +61,26 @@ std::array<double, 6> missed(const Mapped& a, const Mapped& b, const SphereDiffe
 TEST_CASE("tips of a galloping horse come near those of a cow and of a wolf", "[stats][data]") {
   if (folder.empty() || !fs::exists(folder)) DSNS_SKIP("DSNS_TEST_DATA_DIR has no OBJ sequences");
   const Mapped first = mapped(horse);
-  RegistrationOptions options;
-  options.spatial.search = RotationSearch::upright;
-  options.spatial_times = 3;
-  options.spatial.latitudes = 16;
-  options.spatial.refinement = {{10, 12, 0.0, 0.5}};
+  SymmetricOptions options;
+  options.registration.spatial.search = RotationSearch::upright;
+  options.registration.spatial_times = 3;
+  options.registration.spatial.latitudes = 16;
+  options.registration.spatial.refinement = {{10, 12, 0.0, 0.5}};
   for (const Animal& animal : {cow, wolf}) {
     const Mapped second = mapped(animal);
-    const SpatialResult r = register_in_space(first.surface, second.surface, options);
+    const SpatialResult r = register_symmetrically(first.surface, second.surface, options).there;
     const std::array<double, 6> errors = missed(first, second, r.gamma),
                                 unregistered = missed(first, second, SphereDiffeomorphism());
     double sum = 0, before = 0;
     for (std::size_t k = 0; k < 6; ++k) {
       INFO(animal.name << ", tip " << k << ": " << errors[k] << " %, not registered " << unregistered[k]);
-      CHECK(errors[k] < 12);
+      CHECK(errors[k] < 8);
       sum += errors[k] / 6;
       before += unregistered[k] / 6;
     }
     INFO(animal.name << ": mean " << sum << " %, not registered " << before);
-    CHECK(sum < 6);
-    CHECK(sum < 0.3 * before);
+    CHECK(sum < 4);
+    CHECK(sum < 0.1 * before);
   }
 }
 
