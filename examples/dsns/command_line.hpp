@@ -39,6 +39,8 @@ struct CommandLine {
   StatisticsEvaluation statistics;
   bool spatial_only = false;
   SpatialBeginning beginning = SpatialBeginning::rotation;
+  std::string landmark_file;
+  double landmark_weight = LandmarkFile{}.together;
   GeodesicOptions way;
   std::string before, fitted;
   Study study;

@@ -2,6 +2,7 @@
 /// evaluate spatial, correspondence, statistics: registration and means against truths that are known; and registration in space
 /// alone.
 #include "bodies.hpp"
+#include "landmarks.hpp"
 
 #include <dsns/stats/symmetric_registration.hpp>
 
@@ -65,6 +66,7 @@ SpatialResult register_spatial(const AnyAnimatedSurface& first, const AnyAnimate
 enum class SpatialBeginning { rotation, correspondence };
 /// Registers in space alone: equal times correspond. `out` may be empty: nothing is written.
 void register_spatial_only(const Body& first, const Body& second, const std::filesystem::path& out,
-                           SpatialBeginning beginning, const Settings& settings, Report& report);
+                           SpatialBeginning beginning, const LandmarkFile& landmarks, const Settings& settings,
+                           Report& report);
 
 }  // namespace dsns::program
