@@ -47,6 +47,14 @@ struct CorrespondenceEvaluation {
 void evaluate_correspondence(const std::string& first, const std::string& second, const Settings& settings,
                              const CorrespondenceEvaluation& evaluation, Report& report);
 
+struct TrackEvaluation {
+  double density = 4;  ///< vertices of a frame, times those of the animation, about
+};
+/// Every frame of an animation gets triangles of its own, and track() is judged by where the vertices truly are. `out`: both, or
+/// empty.
+void evaluate_track(const std::string& source, const std::filesystem::path& out, const TrackEvaluation& evaluation,
+                    const Settings& settings, Report& report);
+
 struct StatisticsEvaluation {
   std::vector<int> copies{2, 6, 20};
   double degrees = 5;   ///< size of the warps of the spheres, rms

@@ -18,7 +18,7 @@ struct VertexPair {
 struct LandmarkFile {
   std::filesystem::path file;
   std::vector<VertexPair> pairs;
-  double together = 1;  ///< what all weigh together, see SphereLandmarks
+  double together = 10;  ///< what all weigh together, see SphereLandmarks
 };
 
 /// Each line `vertex, vertex[, weight]`; # begins a comment, the first line may be a header. No path: no landmarks.

@@ -21,7 +21,11 @@ void CommandLine::add_single() {
       ->required()
       ->expected(1);
   track_command->add_option("-o,--output", out, "write the motion on the first frame's triangles to this GLB");
-  track_command->preparse_callback([&](std::size_t) { settings.frames = 0; });
+  add_step_views(track_command, settings);
+  track_command->preparse_callback([&](std::size_t) {
+    settings.frames = 0;
+    settings.views = 1;
+  });
   track_command->get_option("--frames")->description("equidistant ones of the frames (all)")->default_str("");
   track_command->get_option("--rate")->description("frames a second (24)");
 

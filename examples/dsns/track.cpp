@@ -65,6 +65,7 @@ void track(const std::filesystem::path& folder, const std::filesystem::path& out
 
   FrameRegistrationOptions options;
   options.spatial.threads = settings.threads;
+  options.views = settings.views;
   const double rate = settings.rate > 0 ? settings.rate : 24;
   FrameRegistration tracked = [&] {
     ProgressLine line;

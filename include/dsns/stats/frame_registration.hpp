@@ -1,13 +1,13 @@
 #pragma once
 /// Frames that do not share their triangles, such as scans, as one moving mesh: each is mapped to the sphere by itself, and registered
-/// to the one before it.
+/// to the one before it, both ways: one way alone drifts twice as far.
 ///
 ///   const FrameRegistration r = register_frames(meshes, seconds);
 ///   r.sequence;                                                      // on the triangles of the first
 #include <dsns/elastic/normalization.hpp>
 #include <dsns/mesh/sphere_mask.hpp>
 #include <dsns/mesh/spherical_parameterization.hpp>
-#include <dsns/stats/co_registration.hpp>
+#include <dsns/stats/symmetric_registration.hpp>
 #include <dsns/surface/any_surface.hpp>
 #include <dsns/surface/sampled.hpp>
 
@@ -16,6 +16,8 @@ namespace dsns {
 /// Bodies move little from one frame to the next, so that they stand alike.
 struct FrameRegistrationOptions {
   SpatialOptions spatial;  ///< its search is upright and its mask that of the frames, whatever it says
+  int views =
+      1;  ///< of a step, see SymmetricOptions; 0: of the later frame to the former alone, in a third of the time
   ParameterizationOptions parameterization;
 };
 
@@ -37,6 +39,10 @@ struct MappedFrame {
   Mat3X positions(const Mat3X& s) const {
     return (still.scale * dsns::positions(surface, s, 0.0)).colwise() + Vec3d(still.trajectory.col(0));
   }
+  std::function<Eigen::VectorXd(const Mat3X&)> mask() const {
+    if (still.sequence.cap_faces == 0) return {};
+    return SphereMask(still.sequence, sphere);
+  }
 };
 inline MappedFrame mapped_frame(const MeshSequence& frame, const ParameterizationOptions& options) {
   require(frame.frame_count() == 1, "register_frames: ", frame.name, " has ", frame.frame_count(),
@@ -57,10 +63,11 @@ inline MappedFrame mapped_frame(const MeshSequence& frame, const Parameterizatio
 inline FrameRegistration register_frames(const std::vector<MeshSequence>& frames, double duration,
                                          const FrameRegistrationOptions& options = {}, const Progress& progress = {}) {
   require(!frames.empty(), "register_frames: no meshes, give at least one");
-  RegistrationOptions one_time;
-  one_time.spatial = options.spatial;
-  one_time.spatial.search = RotationSearch::upright;
-  one_time.spatial_times = 1;
+  SymmetricOptions steps;
+  steps.views = options.views;
+  steps.registration.spatial = options.spatial;
+  steps.registration.spatial.search = RotationSearch::upright;
+  steps.registration.spatial_times = 1;
   FrameRegistration out;
   out.sequence = frames.front();
   out.sequence.duration = duration;
@@ -71,9 +78,10 @@ inline FrameRegistration register_frames(const std::vector<MeshSequence>& frames
   for (std::size_t k = 1; k < frames.size(); ++k) {
     report(progress, "frame to frame", double(k) / double(frames.size()));
     detail::MappedFrame next = detail::mapped_frame(frames[k], options.parameterization);
-    one_time.spatial.mask = {};
-    if (former.still.sequence.cap_faces > 0) one_time.spatial.mask = SphereMask(former.still.sequence, former.sphere);
-    SpatialResult step = register_in_space(former.surface, next.surface, one_time);
+    steps.registration.spatial.mask = former.mask();
+    steps.second_mask = next.mask();
+    SpatialResult step = options.views > 0 ? register_symmetrically(former.surface, next.surface, steps).there
+                                           : register_in_space(former.surface, next.surface, steps.registration);
     images = step.gamma(images);
     out.sequence.frames.push_back(next.positions(images));
     out.frames.push_back(std::move(step.summary));
