@@ -103,6 +103,16 @@ void add_views(CLI::App* command, Settings& settings) {
       ->check(CLI::Range(0, 100));
 }
 
+void add_step_views(CLI::App* command, Settings& settings) {
+  command
+      ->add_option_function<int>(
+          "--views", [&settings](int views) { settings.views = views; },
+          "of each step, 0: of the later frame to the former alone; 1: the mean of both ways; more: also through warps "
+          "of both spheres")
+      ->default_str("1")
+      ->check(CLI::Range(0, 100));
+}
+
 void about_groups(CLI::App* command, Settings& settings) {
   command->add_flag("--keep-going", settings.keep_going, "leave out animations that cannot be used");
   command->add_option("--work", settings.work,

@@ -39,6 +39,9 @@ struct CommandLine {
   StatisticsEvaluation statistics;
   bool spatial_only = false;
   SpatialBeginning beginning = SpatialBeginning::rotation;
+  TrackEvaluation tracking;
+  std::string landmark_file;
+  double landmark_weight = LandmarkFile{}.together;
   GeodesicOptions way;
   std::string before, fitted;
   Study study;
@@ -58,6 +61,8 @@ void add_fit(CLI::App* command, Settings& settings);
 void about_fits(CLI::App* command, Settings& settings);
 void add_registration(CLI::App* command, Settings& settings);
 void add_views(CLI::App* command, Settings& settings);
+/// The same of the steps from frame to frame: both ways unless told otherwise.
+void add_step_views(CLI::App* command, Settings& settings);
 void about_groups(CLI::App* command, Settings& settings);
 /// Reads the sources and, if the settings ask for networks, fits them. Says which cannot be used, all of them: then it throws,
 /// or leaves them out where it may and `least` remain.

@@ -2,6 +2,7 @@
 /// The subcommands. Each prints its figures in a report; errors come as exceptions of the library.
 #include "bodies.hpp"
 #include "group.hpp"
+#include "landmarks.hpp"
 
 #include <dsns/stats/principal_modes.hpp>
 
@@ -16,11 +17,15 @@ void inspect(const std::string& source, const Settings& settings, Report& report
 /// Maps the body to the sphere.
 void parameterize(const std::string& source, const std::filesystem::path& out, const Settings& settings,
                   Report& report);
+/// Makes one moving mesh, on the triangles of the first, of a folder of frames that each have their own.
+void track(const std::filesystem::path& folder, const std::filesystem::path& out, const Settings& settings,
+           Report& report);
 /// Fits a network to the body, which then is the network. `out` may be empty: nothing is written; likewise below.
 void fit(Body& body, const std::filesystem::path& out, const Settings& settings, Report& report);
 /// `own`: where to write the result on the first one's own mesh, or empty; likewise below.
 void register_two(const Body& first, const Body& second, const std::filesystem::path& out,
-                  const std::filesystem::path& own, const Settings& settings, Report& report);
+                  const std::filesystem::path& own, const LandmarkFile& landmarks, const Settings& settings,
+                  Report& report);
 /// What a geodesic goes between: bodies registered in space and time, or, to see the difference, as their sphere maps and clocks
 /// have them.
 enum class GeodesicEnds { registered, as_they_are };

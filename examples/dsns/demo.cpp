@@ -76,7 +76,7 @@ void demo(std::vector<std::string> sources, const std::filesystem::path& folder,
   }
   report.say("\nThe second registered to the first:");
   report.section("register");
-  register_two(bodies[0], bodies[1], folder / "registered.glb", {}, settings, report);
+  register_two(bodies[0], bodies[1], folder / "registered.glb", {}, {}, settings, report);
   report.say("\nGeodesic from the first to the second:");
   report.section("geodesic");
   GeodesicOptions way;

@@ -2,6 +2,7 @@
 /// evaluate spatial, correspondence, statistics: registration and means against truths that are known; and registration in space
 /// alone.
 #include "bodies.hpp"
+#include "landmarks.hpp"
 
 #include <dsns/stats/symmetric_registration.hpp>
 
@@ -46,6 +47,14 @@ struct CorrespondenceEvaluation {
 void evaluate_correspondence(const std::string& first, const std::string& second, const Settings& settings,
                              const CorrespondenceEvaluation& evaluation, Report& report);
 
+struct TrackEvaluation {
+  double density = 4;  ///< vertices of a frame, times those of the animation, about
+};
+/// Every frame of an animation gets triangles of its own, and track() is judged by where the vertices truly are. `out`: both, or
+/// empty.
+void evaluate_track(const std::string& source, const std::filesystem::path& out, const TrackEvaluation& evaluation,
+                    const Settings& settings, Report& report);
+
 struct StatisticsEvaluation {
   std::vector<int> copies{2, 6, 20};
   double degrees = 5;   ///< size of the warps of the spheres, rms
@@ -65,6 +74,7 @@ SpatialResult register_spatial(const AnyAnimatedSurface& first, const AnyAnimate
 enum class SpatialBeginning { rotation, correspondence };
 /// Registers in space alone: equal times correspond. `out` may be empty: nothing is written.
 void register_spatial_only(const Body& first, const Body& second, const std::filesystem::path& out,
-                           SpatialBeginning beginning, const Settings& settings, Report& report);
+                           SpatialBeginning beginning, const LandmarkFile& landmarks, const Settings& settings,
+                           Report& report);
 
 }  // namespace dsns::program

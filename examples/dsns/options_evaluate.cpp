@@ -111,6 +111,18 @@ void CommandLine::add_evaluations() {
   add_registration(consistency_command, settings);
   add_views(consistency_command, settings);
 
+  CLI::App* tracking_command = command_of(
+      evaluate_command, "track", "give each frame triangles of its own, track them, and compare with the truth",
+      [&] { evaluate_track(sources[0], out, tracking, settings, report); });
+  tracking_command->add_option("FILE", sources, "the animation")->required()->expected(1);
+  tracking_command->add_option("-o,--output", out, "write the truth and what was tracked to this GLB, side by side");
+  tracking_command
+      ->add_option("--density", tracking.density, "vertices of each frame, times those of the animation, about")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 100.0));
+  add_step_views(tracking_command, settings);
+  tracking_command->preparse_callback([&](std::size_t) { settings.views = 1; });
+
   CLI::App* correspondence_command =
       command_of(evaluate_command, "correspondence",
                  "match two bodies whose vertices correspond by number, which is not shown", [&] {

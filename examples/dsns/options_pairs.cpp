@@ -6,11 +6,12 @@ namespace dsns::program {
 void CommandLine::add_pairs() {
   CLI::App* register_command =
       command("register", "bring the second animation into correspondence with the first", [&] {
+        const LandmarkFile landmarks = read_landmarks(landmark_file, landmark_weight);
         const std::vector<Body> bodies = load(sources, settings, report, 2);
         if (spatial_only)
-          register_spatial_only(bodies[0], bodies[1], out, beginning, settings, report);
+          register_spatial_only(bodies[0], bodies[1], out, beginning, landmarks, settings, report);
         else
-          register_two(bodies[0], bodies[1], out, own, settings, report);
+          register_two(bodies[0], bodies[1], out, own, landmarks, settings, report);
       });
   register_command->add_option("FILES", sources, "two animations")->required()->expected(2);
   register_command->add_option("-o,--output", out, "write both and the registered second to this GLB");
@@ -31,6 +32,17 @@ void CommandLine::add_pairs() {
   register_command->get_option("--start")->needs(only);
   add_views(register_command, settings);
   register_command->get_option("--views")->needs(only)->excludes("--start");
+  CLI::Option* marks = register_command->add_option(
+      "--landmarks", landmark_file,
+      "points that correspond, a line each: vertex of the first file's own mesh, vertex of the second's, and a weight "
+      "if you like (1; 0: only measured), separated by commas, vertices from 0");
+  register_command
+      ->add_option("--landmark-weight", landmark_weight,
+                   "of all landmarks together: 1 counts a miss of one radian as much as the whole squared norm of the "
+                   "first body's field")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e6))
+      ->needs(marks);
   add_registration(register_command, settings);
 
   CLI::App* geodesic_command = command("geodesic", "the way from one animation to another, and their distance", [&] {

@@ -8,10 +8,12 @@
 namespace dsns::program {
 
 void register_two(const Body& a, const Body& b, const std::filesystem::path& out, const std::filesystem::path& own,
-                  const Settings& settings, Report& report) {
+                  const LandmarkFile& landmarks, const Settings& settings, Report& report) {
   ProgressLine line;
-  const MovingRegistration r = register_bodies(a, b, settings, std::ref(line));
+  const BodyLandmarks marks = landmarks_on(landmarks, a, b);
+  const MovingRegistration r = register_bodies(a, b, settings, std::ref(line), marks.used);
   report_registration(r, report);
+  report_landmarks(marks, b, r.spatial, report);
   say_units(report);
   if (!own.empty()) {
     write_on_own_mesh(own, a, registered(b, r, a.sphere, settings.frames), settings);

@@ -46,9 +46,7 @@ void parameterize(const std::string& name, const std::filesystem::path& out, con
     sphere.frames[std::size_t(k)] = (0.5 * extent.maxCoeff() * turn * map.sphere).colwise() + Vec3d((low + high) / 2);
   }
   sphere.name += "_sphere";
-  Mat3X colors(3, first.cols());
-  for (Index v = 0; v < first.cols(); ++v)
-    colors.col(v) = (0.1 + 0.75 * (Vec3d(first.col(v)) - low).array() / extent.array()).matrix();
+  const Mat3X colors = position_colors(first);
   Scene scene;
   scene.add(sequence, colors);
   scene.add(std::move(sphere), colors);

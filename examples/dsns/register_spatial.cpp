@@ -18,6 +18,7 @@ SpatialResult from_correspondence(const Body& a, const Body& b, const Registrati
                                   const Progress& progress) {
   MatchedRegistrationOptions matched;
   matched.registration = options;
+  matched.landmarks = options.spatial.landmarks;
   const MatchedRegistration r =
       register_matched(a.surface, MatchingBody(a.normalized.sequence, a.sphere.vertices), b.surface,
                        MatchingBody(b.normalized.sequence, b.sphere.vertices), matched, progress);
@@ -49,14 +50,16 @@ SpatialResult register_spatial(const AnyAnimatedSurface& first, const AnyAnimate
 }
 
 void register_spatial_only(const Body& a, const Body& b, const std::filesystem::path& out, SpatialBeginning beginning,
-                           const Settings& settings, Report& report) {
+                           const LandmarkFile& landmarks, const Settings& settings, Report& report) {
   ProgressLine line;
+  const BodyLandmarks marks = landmarks_on(landmarks, a, b);
   SymmetricOptions symmetric;
   RegistrationOptions& options = symmetric.registration;
   if (a.normalized.sequence.cap_faces > 0) options.spatial.mask = SphereMask(a.normalized.sequence, a.sphere.vertices);
   if (b.normalized.sequence.cap_faces > 0) symmetric.second_mask = SphereMask(b.normalized.sequence, b.sphere.vertices);
   options.spatial.search = settings.search;
   options.spatial.threads = settings.threads;
+  options.spatial.landmarks = marks.used;
   symmetric.views = settings.views;
   symmetric.seed = settings.seed;
   const SpatialResult r = beginning == SpatialBeginning::correspondence
@@ -70,6 +73,7 @@ void register_spatial_only(const Body& a, const Body& b, const std::filesystem::
   report.figure("spatial.rotation_deg", "rotation of the body, degrees", rotation_angle(r.rotation) * 180 / pi);
   report.figure("spatial.steps", "spatial steps", s.steps);
   report.figure("spatial.stop", "stopped because", s.stop);
+  report_landmarks(marks, b, r, report);
   if (out.empty()) return;
   Scene scene;
   const int frames = settings.frames > 0 ? settings.frames : 32;

@@ -89,8 +89,10 @@ MeshSequence registered(const Body& body, const MovingRegistration& r, const Tri
 }
 
 MovingRegistration register_bodies(const Body& first, const Body& second, const Settings& settings,
-                                   const Progress& progress) {
-  return register_moving(first.surface, second.surface, first.sphere, registration_options(first, settings), progress);
+                                   const Progress& progress, const SphereLandmarks& landmarks) {
+  RegistrationOptions options = registration_options(first, settings);
+  options.spatial.landmarks = landmarks;
+  return register_moving(first.surface, second.surface, first.sphere, options, progress);
 }
 
 }  // namespace dsns::program

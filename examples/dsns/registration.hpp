@@ -9,7 +9,7 @@ namespace dsns::program {
 /// With a mask where holes of the first body are closed.
 RegistrationOptions registration_options(const Body& first, const Settings& settings);
 MovingRegistration register_bodies(const Body& first, const Body& second, const Settings& settings,
-                                   const Progress& progress);
+                                   const Progress& progress, const SphereLandmarks& landmarks = {});
 /// What the registration did, and where its figures say that the result is doubtful.
 void report_registration(const MovingRegistration& registration, Report& report);
 void say_not_written(Report& report, const std::string& option = "-o FILE.glb");

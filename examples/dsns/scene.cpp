@@ -31,14 +31,24 @@ void Scene::write(const std::filesystem::path& path) const {
   write_gltf(path, bodies_, options);
 }
 
-Mat3X place_colors(const Body& body, const Mat3X& sphere) {
-  const Mat3X all = body.surface.positions(body.sphere.vertices, 0), here = body.surface.positions(sphere, 0);
-  const Vec3d low = all.rowwise().minCoeff(), high = all.rowwise().maxCoeff();
-  Mat3X colors(3, here.cols());
-  for (Index i = 0; i < here.cols(); ++i)
+namespace {
+
+/// Where points lie in the box of others.
+Mat3X colors_in_box(const Mat3X& points, const Mat3X& others) {
+  const Vec3d low = others.rowwise().minCoeff(), extent = (others.rowwise().maxCoeff() - low).cwiseMax(1e-300);
+  Mat3X colors(3, points.cols());
+  for (Index i = 0; i < points.cols(); ++i)
     colors.col(i) =
-        (0.1 + 0.75 * (Vec3d(here.col(i)) - low).array() / (high - low).array()).matrix().cwiseMax(0).cwiseMin(1);
+        (0.1 + 0.75 * (Vec3d(points.col(i)) - low).array() / extent.array()).matrix().cwiseMax(0).cwiseMin(1);
   return colors;
+}
+
+}  // namespace
+
+Mat3X position_colors(const Mat3X& points) { return colors_in_box(points, points); }
+
+Mat3X place_colors(const Body& body, const Mat3X& sphere) {
+  return colors_in_box(body.surface.positions(sphere, 0), body.surface.positions(body.sphere.vertices, 0));
 }
 
 }  // namespace dsns::program

@@ -18,6 +18,8 @@ class Scene {
   std::vector<Mat3X> colors_;
 };
 
+/// A colour for each point: where it lies in the box of all, as red, green and blue.
+Mat3X position_colors(const Mat3X& points);
 /// A colour for each point of the sphere: where it lies on the body at the first time, as red, green and blue. The same
 /// colour on two bodies is the same point of the sphere.
 Mat3X place_colors(const Body& body, const Mat3X& sphere);

@@ -38,6 +38,7 @@ TEST_CASE("the first frame that differs, and broken lines, are named", "[io]") {
   folder.write("2.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 3 2\n");
   folder.write("3.obj", good + "f 1 3 2\n");
   CHECK(contains(said(), "2.obj has other faces"));
+  CHECK(contains(said(), "dsns track"));
   folder.write("2.obj", "v 0 0 0\n" + good);
   CHECK(contains(said(), "2.obj has other faces or vertices (4 vertices, 1 faces)"));
   folder.write("2.obj", "v 0 0\n" + good);

@@ -45,6 +45,14 @@ TEST_CASE("what was given comes back where nothing moved, and turns and grows wi
   const OwnMesh own(given, repaired);
   REQUIRE(own.vertex_count() == given.vertex_count());
   CHECK((own.moved(repaired.sequence.frames[0]) - given.frames[0]).norm() < 1e-13);
+  Index dropped = 0;
+  for (Index v = 0; v < given.vertex_count(); ++v)
+    if (const Index became = own.repaired_vertex(v); became < 0)
+      ++dropped;
+    else
+      CHECK((repaired.sequence.frames[0].col(became) - given.frames[0].col(v)).norm() < 1e-13);
+  CHECK(dropped == icosphere(0).vertices.cols() + 1);  // of the loose ball, and the one that no face uses
+  CHECK_THROWS_AS(own.repaired_vertex(given.vertex_count()), InvalidArgument);
 
   const Mat3 R = rotation_exp(Vec3d(0.3, -1.2, 0.8));
   const auto moved = [&](const Mat3X& x) { return Mat3X((2.5 * R * x).colwise() + Vec3d(1, 2, 3)); };

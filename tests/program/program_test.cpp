@@ -4,7 +4,9 @@
 
 #include <dsns/io/gltf.hpp>
 #include <dsns/mesh/sphere_mesh.hpp>
+#include <dsns/sphere/rotations.hpp>
 #include <dsns/surface/analytic.hpp>
+#include <dsns/surface/bodies.hpp>
 
 #include <sys/wait.h>
 
@@ -100,6 +102,120 @@ TEST_CASE("unusable input ends with status 1 and one sentence", "[program]") {
   check_refused(run(folder.path(), "fit " + quoted(file("ball.glb")) + " -o " + quoted(file("none") / "out.glb")),
                 "folder");
   check_refused(run(folder.path(), "fit " + quoted(file("ball.glb")) + " -o " + quoted(file("out.obj"))), ".glb");
+}
+
+TEST_CASE("landmarks draw a registration to them, and those that cannot be used are named with their line",
+          "[program]") {
+  const test::TemporaryFolder folder;
+  const auto file = [&](const std::string& name) { return folder.path() / name; };
+  LimbedBody body;
+  body.limbs = {{Vec3d(1, 0.5, 0).normalized(), 6, Vec3d(1, 0.4, 0), Vec3d(0, 0.4, 0.2)}};
+  const TriangleMesh sphere = icosphere(2);
+  const Index n = sphere.vertices.cols();
+  write_gltf(file("a.glb"), sequence_of(body, sphere, 3));
+  // The same body, with a loose ball behind its vertices.
+  MeshSequence with_ball = sequence_of(body, sphere, 3);
+  with_ball.faces = test::joined(sphere, icosphere(0)).faces;
+  for (Mat3X& frame : with_ball.frames) {
+    const Mat3X ball = (0.05 * icosphere(0).vertices).colwise() + Vec3d(0, 3, 0);
+    frame.conservativeResize(3, n + ball.cols());
+    frame.rightCols(ball.cols()) = ball;
+  }
+  write_gltf(file("b.glb"), with_ball);
+  const std::string both = quoted(file("a.glb")) + " " + quoted(file("b.glb")) + " --frames 3 --landmarks ";
+
+  // Vertices of the first, each with one of the second half a radian away: nothing but landmarks would bring them together.
+  std::string used = "a, b # the names of columns\n", held_out;
+  for (const Vec3d& s : {Vec3d(-1, 0, 0), Vec3d(0, 0, 1), Vec3d(0, -1, 0)}) {
+    const auto nearest = [&](const Vec3d& p) {
+      Index v = 0;
+      (p.transpose() * sphere.vertices).maxCoeff(&v);
+      return v;
+    };
+    const Vec3d away = std::cos(0.5) * s + std::sin(0.5) * Vec3d(s.z(), s.x(), s.y());
+    const std::string pair = std::to_string(nearest(s)) + ", " + std::to_string(nearest(away));
+    used += pair + "\n";
+    held_out += pair + ", 0\n";
+  }
+  std::ofstream(file("used.csv")) << used;
+  std::ofstream(file("held_out.csv")) << held_out;
+  const Run drawn = run(folder.path(), "register " + both + quoted(file("used.csv")) +
+                                           " --spatial-only --landmark-weight 5 --json " + quoted(file("used.json")));
+  INFO(drawn.out << drawn.err);
+  REQUIRE(drawn.status == 0);
+  const Run free = run(folder.path(),
+                       "register " + both + quoted(file("held_out.csv")) + " --json " + quoted(file("held_out.json")));
+  INFO(free.out << free.err);
+  REQUIRE(free.status == 0);
+  const std::string with = read(file("used.json")), without = read(file("held_out.json"));
+  CHECK(with.find("\"landmarks_held_out\"") == std::string::npos);
+  CHECK(without.find("\"landmarks\"") == std::string::npos);
+  CHECK(number_after(with, "number") == 3);
+  CHECK(number_after(without, "missed_deg") > 20);  // one body seen twice stays where it is
+  CHECK(number_after(with, "missed_deg") < 0.5 * number_after(without, "missed_deg"));
+  CHECK(number_after(with, "missed_percent") < 0.6 * number_after(without, "missed_percent"));
+
+  struct Wrong {
+    std::string text, reason;
+  };
+  for (const Wrong& wrong :
+       {Wrong{"0, 0\n\n162, 1\n", "line 3: there is no vertex 162 in the first mesh"},
+        Wrong{"a, b\n1, -1\n", "no vertex -1"}, Wrong{"0, " + std::to_string(n) + "\n", "dropped"},
+        Wrong{"1, 1.5\n", "line 1: '1.5' is not the number"}, Wrong{"1, 2\n3\n", "line 2: 1 column"},
+        Wrong{"1, 2, -1\n", "'-1' is not a weight"}, Wrong{"# nothing\n", "no landmarks"}}) {
+    std::ofstream(file("wrong.csv")) << wrong.text;
+    check_refused(run(folder.path(), "register " + both + quoted(file("wrong.csv"))), wrong.reason);
+  }
+  check_refused(run(folder.path(), "register " + both + quoted(file("nowhere.csv"))), "nowhere.csv does not exist");
+}
+
+TEST_CASE("frames with triangles of their own become one animation", "[program]") {
+  const test::TemporaryFolder folder;
+  const auto file = [&](const std::string& name) { return folder.path() / name; };
+  const auto write_frame = [&](const std::string& in, const std::string& name, const TriangleMesh& mesh) {
+    std::filesystem::create_directories(file(in));
+    std::ofstream out(file(in) / name);
+    for (Index v = 0; v < mesh.vertices.cols(); ++v) out << "v " << mesh.vertices.col(v).transpose() << '\n';
+    for (Index f = 0; f < mesh.faces.cols(); ++f) out << "f " << (mesh.faces.col(f).array() + 1).transpose() << '\n';
+  };
+  LimbedBody body;
+  body.axes = {1, 0.7, 0.6};
+  body.limbs = {{Vec3d(0.8, -0.7, -0.5).normalized(), 6, Vec3d(0.3, -0.9, -0.2), Vec3d(0, 0.3, 0.2)},
+                {Vec3d(-0.8, 0.6, -0.5).normalized(), 6, Vec3d(-0.2, 0.6, -0.7), Vec3d(0.3, 0, 0.1)}};
+  const auto place = [](const Mat3X& x) { return Mat3X((40 * x).colwise() + Vec3d(100, 0, 0)); };
+  const TriangleMesh ball = icosphere(3);
+  for (int k = 0; k < 3; ++k) {
+    const TriangleMesh mesh = k == 1 ? latitude_longitude_sphere(18, 30) : ball;
+    const Mat3X s = rotation_exp(k * Vec3d(1.1, -0.7, 0.4)) * mesh.vertices;
+    write_frame("scans", "frame_" + std::to_string(k + 8) + ".obj", {place(positions(body, s, 0.1 * k)), mesh.faces});
+  }
+  check_refused(run(folder.path(), "inspect " + quoted(file("scans"))), "dsns track");
+  const Run r = run(folder.path(), "track " + quoted(file("scans")) + " -o " + quoted(file("one.glb")) + " --json " +
+                                       quoted(file("t.json")));
+  INFO(r.out << r.err);
+  REQUIRE(r.status == 0);
+  const MeshSequence one = read_gltf(file("one.glb"), {"", 3}).sequence;
+  REQUIRE(one.vertex_count() == ball.vertices.cols());
+  REQUIRE(one.frame_count() == 3);
+  const Mat3X truth = place(positions(body, ball.vertices, 0.2));
+  const Mat3X moved = one.frames.back().colwise() - Vec3d(one.frames.back().rowwise().mean() - truth.rowwise().mean());
+  CHECK((moved - truth).colwise().norm().mean() <
+        0.02 * (truth.rowwise().maxCoeff() - truth.rowwise().minCoeff()).norm());
+  const std::string json = read(file("t.json"));
+  CHECK(count(json, "\"energy_left\": ") == 2);
+  CHECK(number_after(json, "most_energy_left") < 0.05);
+  CHECK(number_after(json, "min_jacobian") > 0);
+
+  std::filesystem::create_directory(file("empty"));
+  check_refused(run(folder.path(), "track " + quoted(file("empty"))), "holds 0");
+  write_frame("single", "a.obj", ball);
+  check_refused(run(folder.path(), "track " + quoted(file("single"))), "holds 1");
+  write_frame("single", "b.obj", test::torus(20, 10));
+  const Run torus = run(folder.path(), "track " + quoted(file("single")));
+  check_refused(torus, "genus");
+  CHECK(torus.err.find("b.obj") != std::string::npos);
+  check_refused(run(folder.path(), "track " + quoted(file("scans")) + " -o " + quoted(file("scans") / "one.glb")),
+                "outside");
 }
 
 TEST_CASE("wrong usage ends with status 2, help with 0", "[program]") {

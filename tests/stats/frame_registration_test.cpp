@@ -36,7 +36,7 @@ TEST_CASE("frames on triangles of their own become one moving mesh", "[stats]") 
   INFO("missed by " << missed / size << " of the size");
   CHECK(missed < 0.02 * size);
   CHECK(missed < 0.1 * rms(meshes.back().vertices));  // whose vertices of equal number lie elsewhere
-  CHECK_THROWS_AS(register_frames({}, 1), InvalidArgument);
+  CHECK_THROWS_AS(register_frames(std::vector<TriangleMesh>(), 1), InvalidArgument);
 }
 
 }  // namespace frame_registration_test

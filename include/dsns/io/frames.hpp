@@ -75,7 +75,8 @@ inline MeshSequence read_frames(const std::filesystem::path& folder, double rate
                            (sequence.frames.empty() || mesh.vertices.cols() == sequence.vertex_count()),
                        path.string(), " has other faces or vertices (", mesh.vertices.cols(), " vertices, ",
                        mesh.faces.cols(), " faces) than ", files.front().filename().string(),
-                       ": all frames of a sequence share one connectivity");
+                       ": frames with triangles of their own become one sequence by `dsns track ", folder.string(),
+                       " -o FILE.glb`, or by register_frames");
     sequence.frames.push_back(std::move(mesh.vertices));
   }
   sequence.duration = (sequence.frame_count() - 1) / rate;

@@ -75,6 +75,13 @@ class OwnMesh {
 
   /// Vertices given, 3 x n.
   Index vertex_count() const { return static_cast<Index>(vertex_.size()); }
+  /// The vertex of the repaired mesh that a given one became; -1 where it was dropped.
+  /// throws   InvalidArgument where there is no such vertex
+  Index repaired_vertex(Index given) const {
+    require(given >= 0 && given < vertex_count(), "OwnMesh: there is no vertex ", given, ", only ", vertex_count(),
+            " of them");
+    return vertex_[std::size_t(given)];
+  }
 
   /// The given mesh's vertices for moved vertices of the repaired one, 3 x n.
   /// throws   InvalidArgument for another number of them
