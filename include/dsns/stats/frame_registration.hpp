@@ -1,6 +1,6 @@
 #pragma once
 /// Frames that do not share their triangles, such as scans, as one moving mesh: each is mapped to the sphere by itself, and registered
-/// to the one before it, both ways: one way alone drifts twice as far.
+/// to the one before it, both ways: one way alone drifts further.
 ///
 ///   const FrameRegistration r = register_frames(meshes, seconds);
 ///   r.sequence;                                                      // on the triangles of the first
