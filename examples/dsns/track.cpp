@@ -13,8 +13,12 @@ namespace {
 /// Of the squared norm, left from one frame to the next, above which the result is doubtful.
 constexpr double doubtful = 0.1;
 
-std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder, const std::filesystem::path& out,
-                                            const Settings& settings) {
+struct FrameFiles {
+  std::vector<std::filesystem::path> files;
+  double duration;  ///< seconds
+};
+
+FrameFiles files_of(const std::filesystem::path& folder, const std::filesystem::path& out, const Settings& settings) {
   namespace fs = std::filesystem;
   require<FileError>(fs::is_directory(folder), folder.string(),
                      fs::exists(folder) ? " is no folder" : " does not exist",
@@ -28,10 +32,11 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder,
   require<FileError>(all.size() >= 2, folder.string(), " holds ", all.size(),
                      " OBJ, OFF or PLY files, a moving mesh needs at least 2");
   const auto wanted = static_cast<std::size_t>(settings.frames);
-  if (wanted == 0 || all.size() <= wanted) return all;
+  const double duration = double(all.size() - 1) / (settings.rate > 0 ? settings.rate : 24);
+  if (wanted == 0 || all.size() <= wanted) return {all, duration};
   std::vector<fs::path> kept;
   for (std::size_t k = 0; k < wanted; ++k) kept.push_back(all[k * (all.size() - 1) / (wanted - 1)]);
-  return kept;
+  return {kept, duration};
 }
 
 /// A frame as one closed surface; what was done to it is told.
@@ -52,7 +57,8 @@ MeshSequence read_frame(const std::filesystem::path& file, const Settings& setti
 
 void track(const std::filesystem::path& folder, const std::filesystem::path& out, const Settings& settings,
            Report& report) {
-  const std::vector<std::filesystem::path> files = files_of(folder, out, settings);
+  const FrameFiles given = files_of(folder, out, settings);
+  const std::vector<std::filesystem::path>& files = given.files;
   report.say(message(folder.string(), ": ", files.size(), " frames"));
   std::vector<MeshSequence> frames;
   for (const auto& file : files) frames.push_back(read_frame(file, settings, report));
@@ -66,10 +72,9 @@ void track(const std::filesystem::path& folder, const std::filesystem::path& out
   FrameRegistrationOptions options;
   options.spatial.threads = settings.threads;
   options.views = settings.views;
-  const double rate = settings.rate > 0 ? settings.rate : 24;
   FrameRegistration tracked = [&] {
     ProgressLine line;
-    return register_frames(frames, double(files.size() - 1) / rate, options, std::ref(line));
+    return register_frames(frames, given.duration, options, std::ref(line));
   }();
   tracked.sequence.name = (folder / "").lexically_normal().parent_path().filename().string();
 

@@ -206,6 +206,11 @@ TEST_CASE("frames with triangles of their own become one animation", "[program]"
   CHECK(number_after(json, "most_energy_left") < 0.05);
   CHECK(number_after(json, "min_jacobian") > 0);
 
+  const Run few =
+      run(folder.path(), "track " + quoted(file("scans")) + " --frames 2 --views 0 --json " + quoted(file("few.json")));
+  REQUIRE(few.status == 0);
+  CHECK(number_after(read(file("few.json")), "duration") == Approx(2 / 24.0));  // of all three
+
   std::filesystem::create_directory(file("empty"));
   check_refused(run(folder.path(), "track " + quoted(file("empty"))), "holds 0");
   write_frame("single", "a.obj", ball);
